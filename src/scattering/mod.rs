@@ -1,0 +1,5 @@
+//! How light turns at a surface: BRDFs.
+
+mod brdf;
+
+pub use brdf::Brdf;

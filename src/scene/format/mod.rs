@@ -1,0 +1,1 @@
+//! Scenes from files: Mitsuba 3 XML, Wavefront OBJ, PLY.

@@ -1,0 +1,185 @@
+//! What a study records. Plain data; `report` turns it into figures and a page.
+
+use super::Provenance;
+use crate::image::Image;
+use serde::Serialize;
+
+/// Everything one run of `study SCENE` measured.
+///
+/// Two truths are named throughout: *discrete* is (I − K)⁻¹E of the assembled K, *continuous* is the scene's own.
+#[derive(Clone, Debug, Serialize)]
+pub struct StudyOutcome {
+    pub scene: String,
+    pub provenance: Provenance,
+    pub n_bundles: usize,
+    pub bands: Vec<String>,
+    /// One sentence for every curved shape that was replaced by polygons.
+    pub tessellations: Vec<String>,
+    pub exchange: ExchangeSummary,
+    pub laws: LawsMeasured,
+    /// Name of the solver whose answer is the discrete truth below.
+    pub reference_solver: String,
+    pub solvers: Vec<SolverRun>,
+    /// Truncated Neumann series after 0, 1, 2, … bounces, against the discrete truth.
+    pub truncation: Vec<Truncation>,
+    pub estimators: Vec<EstimatorRun>,
+    pub refinement: Refinement,
+    /// Wall seconds by stage, in order.
+    pub stages: Vec<(String, f64)>,
+    #[serde(skip)]
+    pub pictures: Option<Pictures>,
+}
+
+/// How the exchange T came about, and how good it was before its repair.
+#[derive(Clone, Debug, Serialize)]
+pub struct ExchangeSummary {
+    /// Pairs of patches facing each other.
+    pub n_pairs: usize,
+    /// Of these: computed by quadrature alone, no ray needed.
+    pub n_unoccluded: usize,
+    /// Of these: visibility sampled by rays.
+    pub n_sampled: usize,
+    /// Of these: found hidden by every ray.
+    pub n_hidden: usize,
+    /// Worst quadrature error estimate over all pairs, relative to μ.
+    pub quadrature_error: f64,
+    /// Root mean square over bundles of the standard error of a row sum, relative to μ: the visibility noise.
+    pub visibility_error: f64,
+    /// max |Σⱼ Tᵢⱼ − μᵢ| / μᵢ before the symmetric repair.
+    pub closure_before_repair: f64,
+    /// Sweeps of symmetric (Sinkhorn) scaling.
+    pub repair_sweeps: usize,
+    /// max |Lrepaired − Lraw| / max |L|, what the repair changed.
+    pub repair_change: f64,
+    /// Fraction of all étendue that ends in the environment.
+    pub escaped: f64,
+}
+
+/// Worst relative violation of each law in the assembled matrices; 0 is perfect.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LawsMeasured {
+    pub reciprocity: f64,
+    pub closure: f64,
+    pub positivity: f64,
+    pub conservation: f64,
+}
+
+/// One deterministic method.
+#[derive(Clone, Debug, Serialize)]
+pub struct SolverRun {
+    pub solver: String,
+    /// "direct" or "iterative".
+    pub kind: String,
+    /// Why it stopped, as one word: "direct", "converged", "budget".
+    pub stop: String,
+    pub n_applies: usize,
+    pub n_adjoint_applies: usize,
+    /// Work in units of one product with K (entries touched / entries of K): Gauss–Seidel and Southwell touch entries, not products.
+    pub products: f64,
+    pub seconds: f64,
+    /// ‖E + K L − L‖∞ / ‖E‖∞, recomputed from the answer.
+    pub true_residual: f64,
+    /// ‖L − L_ref‖∞ / ‖L_ref‖∞ against the discrete truth.
+    pub error: f64,
+    /// A bound on ‖L − (I − K)⁻¹E‖∞ / ‖L‖∞ that trusts no solver; `None` where the absorption is too small for one.
+    pub error_bound: Option<f64>,
+    /// Empty for direct methods.
+    pub history: Vec<HistoryPoint>,
+}
+
+/// One iteration.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct HistoryPoint {
+    /// Work so far, in products with K.
+    pub products: f64,
+    /// ‖E + K L − L‖∞ / ‖E‖∞.
+    pub residual: f64,
+    /// ‖L − L_ref‖∞ / ‖L_ref‖∞.
+    pub error: f64,
+}
+
+/// The Neumann series cut after `bounces` bounces.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Truncation {
+    pub bounces: usize,
+    /// ‖L − Σ_{k ≤ bounces} KᵏE‖∞ / ‖L‖∞.
+    pub error: f64,
+    /// The bound ‖K^{bounces+1} E‖∞ / (1 − ‖K‖∞) / ‖L‖∞, known without L but for the scale.
+    pub bound: f64,
+}
+
+/// One random method at growing sample counts.
+#[derive(Clone, Debug, Serialize)]
+pub struct EstimatorRun {
+    pub estimator: String,
+    /// "discrete" for walks on the matrix, "continuous" for path tracers: which truth it estimates.
+    pub truth: String,
+    pub points: Vec<SamplePoint>,
+    /// Largest |z| over all bundles and bands against the discrete solution, at the largest sample count.
+    pub worst_z: f64,
+    /// How many z-scores were looked at.
+    pub n_comparisons: usize,
+    /// Probability of a |z| this large somewhere, were the two equal (Šidák-corrected).
+    pub p_value: f64,
+    /// Fitted slope of log error against log samples; −1/2 is Monte Carlo.
+    pub slope: f64,
+    pub seconds: f64,
+}
+
+/// An estimator's error at one sample count.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct SamplePoint {
+    pub samples_per_bundle: u64,
+    /// Étendue-weighted root mean square difference from the discrete truth, relative to its root mean square.
+    pub error: f64,
+    /// The same, as predicted by the estimator's own standard errors.
+    pub standard_error: f64,
+}
+
+/// The same scene at finer and finer patches, held against the path tracer's continuous truth.
+#[derive(Clone, Debug, Serialize)]
+pub struct Refinement {
+    /// Coarsest first.
+    pub levels: Vec<RefinementLevel>,
+    /// Observed order p of error ~ patch_size^p, fitted over the levels.
+    pub observed_order: f64,
+    /// Standard error of the order.
+    pub order_standard_error: f64,
+    /// Estimated discretisation error of the finest level's surface means, relative.
+    pub finest_error: f64,
+    /// True if every surface's mean at the finest level agrees with the path tracer within discretisation plus statistical error.
+    pub agrees: bool,
+    pub surfaces: Vec<SurfaceMean>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub struct RefinementLevel {
+    pub patch_size: f64,
+    pub n_bundles: usize,
+    /// Étendue-weighted root mean square difference of the surface means from the path tracer's, relative.
+    pub error: f64,
+    /// The statistical part of `error`: what the path tracer's own noise contributes.
+    pub noise: f64,
+}
+
+/// One surface and band at the finest level.
+#[derive(Clone, Debug, Serialize)]
+pub struct SurfaceMean {
+    pub surface: String,
+    pub band: String,
+    /// Mean outgoing radiance from the matrix.
+    pub matrix: f64,
+    /// Mean outgoing radiance from the path tracer.
+    pub path_tracer: f64,
+    pub standard_error: f64,
+    /// Estimated discretisation error of `matrix`.
+    pub discretisation_error: f64,
+}
+
+/// The solved scene from its camera, linear radiance.
+#[derive(Clone, Debug)]
+pub struct Pictures {
+    pub solved: Image,
+    /// After 0, 1, 2, … bounces, cumulative: entry k is E + … + KᵏE.
+    pub bounces: Vec<Image>,
+}
