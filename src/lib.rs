@@ -30,22 +30,22 @@
 //! Each room uses only rooms further down this list; `tests/tidy.rs` reads the sources and fails on an arrow that runs up.
 #![forbid(unsafe_code)]
 
-#[doc(hidden)]
-pub mod cli;
-pub mod report;
-pub mod study;
-pub mod oracle;
-pub mod compare;
-pub mod solver;
-pub mod estimator;
 pub mod assembly;
 pub mod basis;
+#[doc(hidden)]
+pub mod cli;
+pub mod compare;
+pub mod estimator;
 pub mod gallery;
-pub mod scene;
-pub mod medium;
-pub mod scattering;
 pub mod geometry;
-pub mod linalg;
 pub mod image;
+pub mod linalg;
+pub mod medium;
+pub mod oracle;
+pub mod report;
 pub mod sampling;
+pub mod scattering;
+pub mod scene;
+pub mod solver;
 pub mod stats;
+pub mod study;

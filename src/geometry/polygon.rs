@@ -98,6 +98,32 @@ impl Polygon {
         self.centroid
     }
 
+    /// A point uniform by area from two numbers uniform in [0, 1); its density is 1/area. Parallelograms keep the grid of the
+    /// unit square; other polygons are fans of triangles chosen by area.
+    pub fn sample(&self, mut u: [f64; 2]) -> Vec3 {
+        let v = &self.vertices;
+        if let [a, b, c, d] = v[..]
+            && (a - b + c - d).abs().max_element() <= 1e-14 * (c - a).abs().max_element()
+        {
+            return a + u[0] * (b - a) + u[1] * (d - a);
+        }
+        // Choose a triangle of the fan, and use what is left of the number.
+        let mut left = u[0] * self.area;
+        let mut triangle = [v[0], v[1], v[2]];
+        for pair in v[1..].windows(2) {
+            triangle = [v[0], pair[0], pair[1]];
+            let area = 0.5 * (pair[0] - v[0]).cross(pair[1] - v[0]).length();
+            u[0] = (left / area).clamp(0.0, 1.0);
+            if left < area {
+                break;
+            }
+            left -= area;
+        }
+        let [a, b, c] = triangle;
+        let s = u[0].sqrt();
+        a + (1.0 - u[1]) * s * (b - a) + u[1] * s * (c - a)
+    }
+
     /// The same polygon seen from behind.
     pub fn flipped(&self) -> Self {
         let mut vertices = self.vertices.clone();

@@ -88,5 +88,13 @@ impl Block {
 
 /// max |xᵢ|; NaN if any xᵢ is NaN.
 pub fn max_abs(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |worst: f64, v| if v.is_nan() { f64::NAN } else if worst.is_nan() { worst } else { worst.max(v.abs()) })
+    values.iter().fold(0.0, |worst: f64, v| {
+        if v.is_nan() {
+            f64::NAN
+        } else if worst.is_nan() {
+            worst
+        } else {
+            worst.max(v.abs())
+        }
+    })
 }

@@ -1,9 +1,19 @@
 //! Operators, blocks of vectors, factorizations. The only door to `faer`, `sprs` and `nalgebra`.
 
 mod block;
+mod dense;
+mod diagonal;
 mod equation;
+mod factor;
+mod matrix;
 mod operator;
+mod sparse;
 
-pub use block::Block;
+pub use block::{Block, max_abs};
+pub use dense::Dense;
+pub use diagonal::Diagonal;
 pub use equation::{Equation, SelfAdjoint};
+pub use factor::{CholeskyFactor, FactorError, LuFactor, NalgebraLu};
+pub use matrix::Matrix;
 pub use operator::LinearOperator;
+pub use sparse::Sparse;

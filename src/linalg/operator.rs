@@ -28,6 +28,15 @@ pub trait LinearOperator: Sync {
     /// out ← column `column` of the matrix of one band. Cost O(n_rows).
     fn column(&self, band: usize, column: usize, out: &mut [f64]);
 
+    /// out ← the diagonal of the matrix of one band. Reads every row unless the implementation knows better.
+    fn diagonal(&self, band: usize, out: &mut [f64]) {
+        let mut row = vec![0.0; self.n_columns()];
+        for (i, slot) in out.iter_mut().enumerate() {
+            self.row(band, i, &mut row);
+            *slot = row[i];
+        }
+    }
+
     /// Stored entries that one apply reads: the currency of the work counts.
     fn n_entries(&self) -> u64;
 }

@@ -31,13 +31,24 @@ pub struct Film {
 /// How a pixel weighs the light that arrives around its centre; lengths in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PixelFilter {
-    Box { radius: f64 },
-    Tent { radius: f64 },
+    Box {
+        radius: f64,
+    },
+    Tent {
+        radius: f64,
+    },
     /// Truncated at 4 standard deviations and shifted to vanish there.
-    Gaussian { standard_deviation: f64 },
-    Mitchell { b: f64, c: f64 },
+    Gaussian {
+        standard_deviation: f64,
+    },
+    Mitchell {
+        b: f64,
+        c: f64,
+    },
     CatmullRom,
-    Lanczos { lobes: f64 },
+    Lanczos {
+        lobes: f64,
+    },
 }
 
 impl Camera {

@@ -1,1 +1,92 @@
-//! TODO-SKELETON
+//! Deterministic answers to L = E + K L, one file a method. Knows operators and vectors, never a scene.
+//!
+//! Every method is a struct of its parameters and a [`Solver`]. Iterative ones stop when ‖E + K L − L‖∞ ≤ tolerance · ‖E‖∞ in every
+//! band; running out of budget is a status, divergence and singularity are errors.
+
+mod bracket;
+mod cg;
+mod cholesky;
+mod error;
+mod gauss_seidel;
+mod jacobi;
+mod lu;
+mod monitor;
+mod neumann;
+mod report;
+mod southwell;
+
+pub use bracket::Bracket;
+pub use cg::Cg;
+pub use cholesky::Cholesky;
+pub use error::SolveError;
+pub use gauss_seidel::GaussSeidel;
+pub use jacobi::Jacobi;
+pub use lu::{Lu, LuNalgebra};
+pub use neumann::Neumann;
+pub use report::{Solution, SolveReport, Stop};
+pub use southwell::Southwell;
+
+use crate::linalg::{Block, Equation};
+use std::ops::ControlFlow;
+
+/// A method that answers L = E + K L.
+pub trait Solver {
+    /// Name on the command line and in reports.
+    fn name(&self) -> &'static str;
+
+    /// True if the answer comes without iterating.
+    fn is_direct(&self) -> bool {
+        false
+    }
+
+    /// Answers the equation, every band; `observer` sees every iterate and may stop it.
+    ///
+    /// # Errors
+    /// A singular or diverging equation, numbers that are not finite, or a property the method needs and the equation lacks.
+    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError>;
+}
+
+/// One iterate on its way to an observer.
+#[derive(Clone, Copy)]
+pub struct Iteration<'a> {
+    /// 0 is the starting guess.
+    pub index: usize,
+    /// Work so far in products with K: entries touched / entries of K.
+    pub products: f64,
+    /// ‖E + K L − L‖∞ / ‖E‖∞, the worst band, as the method knows it without further work.
+    pub residual: f64,
+    /// L as it stands, n × bands.
+    pub iterate: &'a Block,
+}
+
+/// Watches a solver. `()` watches nothing.
+pub trait Observer {
+    /// Called after every iteration; `Break` ends the solve with [`Stop::Observer`].
+    fn observe(&mut self, iteration: Iteration<'_>) -> ControlFlow<()>;
+}
+
+impl Observer for () {
+    fn observe(&mut self, _: Iteration<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+impl<F: FnMut(Iteration<'_>) -> ControlFlow<()>> Observer for F {
+    fn observe(&mut self, iteration: Iteration<'_>) -> ControlFlow<()> {
+        self(iteration)
+    }
+}
+
+/// Every method of this room at one tolerance, in the order of reports. One more method is one more line.
+pub fn all(tolerance: f64) -> Vec<Box<dyn Solver>> {
+    vec![
+        Box::new(Lu),
+        Box::new(Cholesky),
+        Box::new(LuNalgebra),
+        Box::new(Neumann { tolerance }),
+        Box::new(Jacobi { tolerance }),
+        Box::new(GaussSeidel { tolerance }),
+        Box::new(Southwell { tolerance }),
+        Box::new(Cg { tolerance }),
+    ]
+}

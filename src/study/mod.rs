@@ -4,7 +4,7 @@ mod outcome;
 mod provenance;
 
 pub use outcome::{
-    EstimatorRun, ExchangeSummary, HistoryPoint, LawsMeasured, Pictures, Refinement, RefinementLevel, SamplePoint, SolverRun,
-    StudyOutcome, SurfaceMean, Truncation,
+    EstimatorRun, ExchangeSummary, HistoryPoint, LawsMeasured, Pictures, Refinement, RefinementLevel, SamplePoint,
+    SolverRun, StudyOutcome, SurfaceMean, Truncation,
 };
 pub use provenance::Provenance;

@@ -1,0 +1,144 @@
+//! Exchange of two unoccluded polygons as a double contour integral, for pairs that are close or touch.
+//!
+//! ```text
+//! T = ∫∫ cosθ cosθ' / r² dA dA' = ½ ∮∮ ln r  dx·dx'
+//! ```
+//!
+//! The inner integral along an edge has a closed form; the outer one is cut where an edge of the other polygon comes closest and
+//! done by tanh-sinh there, for touching edges leave logarithms at the cuts, and by Gauss elsewhere. Nothing is shifted apart.
+//!
+//! Source: Sparrow (1963), "A new and simpler formulation for radiative angle factors", eq. 9. Cost: O(edges²) nodes, some 10 to
+//! 500 µs.
+
+use super::rules::{Rule, TANH_SINH, gauss_legendre};
+use crate::geometry::Vec3;
+use std::sync::LazyLock;
+
+static GAUSS: LazyLock<[Rule; 2]> = LazyLock::new(|| [gauss_legendre(12), gauss_legendre(18)]);
+
+/// T of two convex polygons, each wholly in front of the other's plane, and an estimate of its error, both in m² sr.
+pub fn exchange(a: &[Vec3], b: &[Vec3]) -> (f64, f64) {
+    // Measure lengths in units of the distance scale: ln r is then small, and a constant in it drops out of the closed contour.
+    let centre = |p: &[Vec3]| p.iter().copied().sum::<Vec3>() / p.len() as f64;
+    let scale = a.iter().chain(b).map(|v| v.distance(centre(a))).fold(0.0, f64::max);
+    if scale == 0.0 {
+        return (0.0, 0.0);
+    }
+    let origin = centre(a);
+    let a: Vec<Vec3> = a.iter().map(|v| (*v - origin) / scale).collect();
+    let b: Vec<Vec3> = b.iter().map(|v| (*v - origin) / scale).collect();
+    let edges = edges_of(&b);
+
+    let (mut sum, mut error) = (0.0, 0.0);
+    for (start, end) in corner_pairs(&a) {
+        let length = start.distance(end);
+        if length == 0.0 {
+            continue;
+        }
+        let tangent = (end - start) / length;
+        let facing: Vec<Edge> =
+            edges.iter().map(|e| Edge { weight: tangent.dot(e.tangent), ..*e }).filter(|e| e.weight != 0.0).collect();
+        let inner = |x: Vec3| facing.iter().map(|edge| edge.weight * edge.log_potential(x)).sum::<f64>();
+
+        // Cut the edge where it comes closest to the other contour.
+        let mut cuts = vec![0.0, 1.0];
+        cuts.extend(facing.iter().flat_map(|e| e.closest_approaches(start, tangent, length)));
+        cuts.retain(|s| (0.0..=1.0).contains(s));
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup_by(|s, t| (*s - *t).abs() < 1e-12);
+
+        for pair in cuts.windows(2) {
+            let (from, piece) = (start + pair[0] * length * tangent, (pair[1] - pair[0]) * length);
+            let to = start + pair[1] * length * tangent;
+            let clearance = facing.iter().map(|e| e.distance_to(from, to)).fold(f64::INFINITY, f64::min);
+            let (fine, coarse) = if clearance > piece {
+                let gauss = |rule: &Rule| -> f64 {
+                    rule.nodes.iter().zip(&rule.weights).map(|(s, w)| w * inner(from + s * piece * tangent)).sum()
+                };
+                (gauss(&GAUSS[1]), gauss(&GAUSS[0]))
+            } else {
+                // Step from the nearer end, so that nodes crowd an end without rounding onto it.
+                let (mut fine, mut coarse) = (0.0, 0.0);
+                for ((low, high, weight), even) in TANH_SINH.fine.iter().zip(&TANH_SINH.coarse_is_even) {
+                    let x = if low < high { from + low * piece * tangent } else { to - high * piece * tangent };
+                    let value = weight * inner(x);
+                    fine += value;
+                    coarse += if *even { 2.0 * value } else { 0.0 };
+                }
+                (fine, coarse)
+            };
+            sum += piece * fine;
+            // Doubling the nodes of either rule squares the error; keep some 8 ulp for rounding.
+            let change = (fine - coarse).abs();
+            error += piece * (change * change.min(1.0) + 2e-15 * fine.abs());
+        }
+    }
+    ((0.5 * sum).max(0.0) * scale * scale, 0.5 * error * scale * scale)
+}
+
+/// One edge of the inner contour.
+#[derive(Clone, Copy)]
+struct Edge {
+    start: Vec3,
+    end: Vec3,
+    tangent: Vec3,
+    length: f64,
+    /// Cosine between this edge and the outer one.
+    weight: f64,
+}
+
+impl Edge {
+    /// ∫ ln|x − y| dy along the edge: s ln √(h² + s²) − s + h atan(s/h) between its ends, h the distance of x from its line.
+    fn log_potential(&self, x: Vec3) -> f64 {
+        let (to_start, to_end) = (self.start - x, self.end - x);
+        let (s0, s1) = (to_start.dot(self.tangent), to_end.dot(self.tangent));
+        let h = self.tangent.cross(to_start).length();
+        let part = |s: f64, r_squared: f64| if r_squared > 0.0 { 0.5 * s * r_squared.ln() } else { 0.0 };
+        // atan(s1/h) − atan(s0/h) is the angle that the edge subtends.
+        let angle = (h * self.length).atan2(h * h + s0 * s1);
+        part(s1, h * h + s1 * s1) - part(s0, h * h + s0 * s0) - self.length + h * angle
+    }
+
+    /// Parameters in (0, length) ↦ (0, 1) of the line start + s tangent closest to this edge's ends and to the edge itself.
+    fn closest_approaches(&self, start: Vec3, tangent: Vec3, length: f64) -> [f64; 3] {
+        let s_of = |p: Vec3| (p - start).dot(tangent) / length;
+        let sine_squared = 1.0 - self.weight * self.weight;
+        let offset = start - self.start;
+        let crossing = if sine_squared > 1e-12 {
+            let s = (self.weight * offset.dot(self.tangent) - offset.dot(tangent)) / sine_squared;
+            s / length
+        } else {
+            f64::NAN
+        };
+        [s_of(self.start), s_of(self.end), crossing]
+    }
+
+    /// A lower bound of the distance between this edge and the segment, good to its order: the closest of ends to lines.
+    fn distance_to(&self, from: Vec3, to: Vec3) -> f64 {
+        let segment = |p: Vec3, a: Vec3, b: Vec3| {
+            let along = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+            p.distance(a + along * (b - a))
+        };
+        let ends = [
+            segment(from, self.start, self.end),
+            segment(to, self.start, self.end),
+            segment(self.start, from, to),
+            segment(self.end, from, to),
+        ];
+        ends.into_iter().fold(f64::INFINITY, f64::min)
+    }
+}
+
+fn corner_pairs(p: &[Vec3]) -> impl Iterator<Item = (Vec3, Vec3)> + '_ {
+    (0..p.len()).map(|k| (p[k], p[(k + 1) % p.len()]))
+}
+
+fn edges_of(p: &[Vec3]) -> Vec<Edge> {
+    corner_pairs(p)
+        .filter(|(start, end)| start != end)
+        .map(|(start, end)| {
+            let length = start.distance(end);
+            Edge { start, end, tangent: (end - start) / length, length, weight: 0.0 }
+        })
+        .collect()
+}

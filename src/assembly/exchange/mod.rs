@@ -1,0 +1,197 @@
+//! Exchange: the étendue that flows between every two bundles, T = Tᵀ, and what flows into sinks.
+//!
+//! Every pair of patches is looked at once and deposited both ways. What a patch loses to the environment and to black backs is
+//! counted by rays of its own, so that closure, Σⱼ Tᵢⱼ + sinksᵢ = μᵢ, is a check and not a definition.
+
+mod clip;
+mod closure;
+mod contour;
+mod quadrature;
+mod rules;
+mod sinks;
+mod visibility;
+
+pub use closure::Repair;
+
+use crate::basis::{Bundles, Patch};
+use crate::geometry::{Polygon, Tracer};
+use crate::linalg::{Block, Matrix};
+use crate::sampling::mix;
+use crate::scene::Scene;
+use quadrature::{Ladder, Nodes};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use visibility::{End, Visibility};
+
+/// How exchange is computed: accuracy is the caller's choice, and every number here enters the provenance of the result.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exchange {
+    /// Relative tolerance of unoccluded pairs.
+    pub tolerance: f64,
+    /// Rays a pair whose visibility geometry does not settle.
+    pub visibility_rays: usize,
+    /// Rays a patch that count what it loses to sinks.
+    pub sink_rays: usize,
+    /// Key of the random shifts.
+    pub seed: u64,
+    /// Whether closure is repaired by symmetric scaling.
+    pub repair: bool,
+}
+
+impl Default for Exchange {
+    fn default() -> Self {
+        Self { tolerance: 1e-10, visibility_rays: 64, sink_rays: 4096, seed: 0x00e7_e2d0_e000_0001, repair: true }
+    }
+}
+
+/// How the entries of T came about.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ExchangeReport {
+    /// Pairs of patches that face each other.
+    pub n_pairs: usize,
+    /// Of these: proved clear, so right to `tolerance`.
+    pub n_clear: usize,
+    /// Of these: proved hidden.
+    pub n_hidden: usize,
+    /// Of these: visibility sampled by rays.
+    pub n_sampled: usize,
+    /// Largest quadrature error estimate relative to the pair's T.
+    pub quadrature_error: f64,
+    /// Root mean square over bundles of the standard error of their row sum, relative to μ.
+    pub visibility_error: f64,
+    /// max |Σⱼ Tᵢⱼ + sinksᵢ − μᵢ| / μᵢ before any repair.
+    pub closure_before_repair: f64,
+    /// `None` if no repair was asked for.
+    pub repair: Option<Repair>,
+}
+
+/// T with its sinks, after repair.
+pub(super) struct Assembled {
+    pub exchange: Matrix,
+    /// n × 2: étendue that escapes, étendue that ends on black backs.
+    pub sinks: Block,
+    pub report: ExchangeReport,
+}
+
+/// One facing pair, as its row keeps it until the rows are joined.
+struct Entry {
+    column: u32,
+    value: f64,
+    variance: f64,
+}
+
+#[derive(Clone, Copy, Default)]
+struct Tally {
+    n_pairs: usize,
+    n_clear: usize,
+    n_hidden: usize,
+    quadrature_error: f64,
+}
+
+/// T and sinks of all patches. Cost O(n²) pairs; `progress` hears the finished share, from any thread.
+pub(super) fn compute(
+    scene: &Scene,
+    bundles: &Bundles,
+    settings: Exchange,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Assembled {
+    let polygons: Vec<&Polygon> = (0..scene.facets().len()).map(|facet| scene.polygon(facet)).collect();
+    let occluders = Tracer::occluders(&polygons);
+    let everything = Tracer::new(&polygons);
+    let patches: Vec<&Patch> = (0..bundles.elements().len()).filter_map(|e| bundles.patch(e)).collect();
+    let ladder = Ladder::new();
+    let nodes: Vec<Nodes> = patches.par_iter().map(|patch| ladder.nodes(&patch.polygon)).collect();
+
+    // Visit the upper triangle row by row; long rows first, so that threads finish together.
+    let n = patches.len();
+    let done = AtomicUsize::new(0);
+    let rows: Vec<(Vec<Entry>, Tally)> = (0..n)
+        .into_par_iter()
+        .with_max_len(1)
+        .map(|i| {
+            let row = upper_row(&patches, &nodes, &occluders, settings, i);
+            let finished = done.fetch_add(n - i, Ordering::Relaxed) + (n - i);
+            progress(0.95 * finished as f64 / (0.5 * (n * (n + 1)) as f64));
+            row
+        })
+        .collect();
+
+    // Count what every patch loses.
+    let lost: Vec<sinks::Lost> = patches
+        .par_iter()
+        .enumerate()
+        .map(|(i, patch)| {
+            let end = End { polygon: &patch.polygon, facet: patch.facet };
+            sinks::lost_from(scene, &everything, end, settings.sink_rays, mix(&[settings.seed, 1, i as u64]))
+        })
+        .collect();
+    let etendue = bundles.etendue();
+    let mut sinks =
+        Block::from_fn(n, 2, |i, sink| etendue[i] * if sink == 0 { lost[i].escaped } else { lost[i].darkened });
+
+    // Join the rows, each pair's variance counted at both of its ends.
+    let mut report = ExchangeReport::default();
+    let mut variance: Vec<f64> = lost.iter().zip(etendue).map(|(lost, mu)| lost.variance * mu * mu).collect();
+    for (i, (row, tally)) in rows.iter().enumerate() {
+        report.n_pairs += tally.n_pairs;
+        report.n_clear += tally.n_clear;
+        report.n_hidden += tally.n_hidden;
+        report.quadrature_error = report.quadrature_error.max(tally.quadrature_error);
+        for entry in row {
+            variance[i] += entry.variance;
+            variance[entry.column as usize] += entry.variance;
+        }
+    }
+    report.n_sampled = report.n_pairs - report.n_clear - report.n_hidden;
+    let relative: f64 = variance.iter().zip(etendue).map(|(v, mu)| v / (mu * mu)).sum();
+    report.visibility_error = (relative / n.max(1) as f64).sqrt();
+    let upper: Vec<Vec<(u32, f64)>> =
+        rows.into_iter().map(|(row, _)| row.into_iter().map(|entry| (entry.column, entry.value)).collect()).collect();
+    let mut exchange = Matrix::symmetric(&upper);
+    drop(upper);
+
+    report.closure_before_repair = closure::violation(&exchange, &sinks, etendue);
+    if settings.repair {
+        report.repair = Some(closure::repair(&mut exchange, &mut sinks, etendue));
+    }
+    progress(1.0);
+    Assembled { exchange, sinks, report }
+}
+
+/// The pairs (i, j), j > i, that exchange anything.
+fn upper_row(
+    patches: &[&Patch],
+    nodes: &[Nodes],
+    occluders: &Tracer,
+    settings: Exchange,
+    i: usize,
+) -> (Vec<Entry>, Tally) {
+    let mut tally = Tally::default();
+    let mut row = Vec::new();
+    let a = patches[i];
+    for j in i + 1..patches.len() {
+        let b = patches[j];
+        if occluders.coplanar(a.facet, b.facet) {
+            continue;
+        }
+        let pair = quadrature::unoccluded((&a.polygon, &nodes[i]), (&b.polygon, &nodes[j]), settings.tolerance);
+        let Some((exchange, error)) = pair else { continue };
+        tally.n_pairs += 1;
+        tally.quadrature_error = tally.quadrature_error.max(error / exchange);
+
+        let key = mix(&[settings.seed, 0, i as u64, j as u64]);
+        let ends = (End { polygon: &a.polygon, facet: a.facet }, End { polygon: &b.polygon, facet: b.facet });
+        match visibility::between(occluders, ends.0, ends.1, settings.visibility_rays, key) {
+            Visibility::Full => {
+                tally.n_clear += 1;
+                row.push(Entry { column: j as u32, value: exchange, variance: 0.0 });
+            }
+            Visibility::None => tally.n_hidden += 1,
+            Visibility::Sampled { share, variance } => {
+                let variance = variance * exchange * exchange;
+                row.push(Entry { column: j as u32, value: share * exchange, variance });
+            }
+        }
+    }
+    (row, tally)
+}

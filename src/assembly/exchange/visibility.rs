@@ -1,0 +1,68 @@
+//! How much of the exchange of two patches gets through what stands between them.
+
+use crate::geometry::{Polygon, Shaft, Tracer, Vec3};
+use crate::sampling::{Kronecker, mix};
+
+/// The visible share of a pair's exchange.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Visibility {
+    /// Proved: nothing between.
+    Full,
+    /// Proved: cut off.
+    None,
+    /// Sampled by rays, with the variance of the share.
+    Sampled { share: f64, variance: f64 },
+}
+
+/// A patch and the number of the facet it was cut from.
+#[derive(Clone, Copy)]
+pub struct End<'a> {
+    pub polygon: &'a Polygon,
+    pub facet: usize,
+}
+
+/// Classifies the pair, and where that does not settle it casts `n_rays` between points spread evenly over both.
+///
+/// The share is Σ k V / Σ k, k the kernel cosθ cosθ'/r² of each ray and V whether it gets through. Its variance is that of the
+/// weighted mean with half a ray added to each outcome, so that no finite number of rays claims certainty.
+pub fn between(occluders: &Tracer, a: End, b: End, n_rays: usize, key: u64) -> Visibility {
+    let handles = match Shaft::between(occluders, (a.polygon, a.facet), (b.polygon, b.facet)) {
+        Shaft::Clear => return Visibility::Full,
+        Shaft::Blocked => return Visibility::None,
+        Shaft::Undecided(handles) => handles,
+    };
+    let points = Kronecker::<4>::new(mix(&[key]));
+    let (mut through, mut total, mut squares) = (0.0, 0.0, 0.0);
+    for k in 0..n_rays {
+        let [u0, u1, u2, u3] = points.point(k);
+        let (x, y) = (a.polygon.sample([u0, u1]), b.polygon.sample([u2, u3]));
+        let kernel = kernel(a.polygon.normal(), b.polygon.normal(), y - x);
+        if kernel <= 0.0 {
+            continue;
+        }
+        total += kernel;
+        squares += kernel * kernel;
+        // With many candidates the tree is faster than the list.
+        let blocked = if handles.len() <= 12 {
+            occluders.blocked_by(&handles, x, y)
+        } else {
+            occluders.occluded(x, y, [a.facet, b.facet])
+        };
+        if !blocked {
+            through += kernel;
+        }
+    }
+    if total == 0.0 {
+        return Visibility::Sampled { share: 0.5, variance: 0.25 };
+    }
+    let share = through / total;
+    let effective = total * total / squares;
+    let hedged = (share * effective + 0.5) / (effective + 1.0);
+    Visibility::Sampled { share, variance: hedged * (1.0 - hedged) / effective }
+}
+
+/// cosθ cosθ' / r², zero where either side faces away.
+fn kernel(normal_a: Vec3, normal_b: Vec3, d: Vec3) -> f64 {
+    let r_squared = d.length_squared();
+    normal_a.dot(d).max(0.0) * (-normal_b.dot(d)).max(0.0) / (r_squared * r_squared)
+}

@@ -1,0 +1,147 @@
+//! The assembled equation of one scene at one resolution.
+
+use super::exchange::{self, Exchange, ExchangeReport};
+use super::{Laws, Propagation, Transport};
+use crate::basis::{Bundles, Element};
+use crate::linalg::{Block, Diagonal, Equation, LinearOperator, Matrix, SelfAdjoint};
+use crate::scene::Scene;
+use std::f64::consts::PI;
+use std::sync::Arc;
+use thiserror::Error;
+
+/// Everything that L = E + K L is made of. Immutable.
+#[derive(Clone, Debug)]
+pub struct System {
+    exchange: Arc<Matrix>,
+    etendue: Arc<[f64]>,
+    sinks: Block,
+    emission: Block,
+    transport: Transport,
+    scattering_root: Diagonal,
+    report: ExchangeReport,
+}
+
+/// Why a scene cannot be assembled in this basis.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum AssemblyError {
+    #[error("surface '{surface}' is not diffuse ({brdf}): one bin of directions cannot hold it")]
+    NotDiffuse { surface: String, brdf: String },
+    #[error("element {element} is not a patch: media and emitting environments are not assembled in a surface basis")]
+    NotAPatch { element: usize },
+}
+
+/// T, S, E of a scene. Cost O(n²) exchanges; memory [`System::memory_estimate`].
+///
+/// # Errors
+/// A surface that the basis cannot represent.
+pub fn assemble(scene: &Scene, bundles: &Bundles, settings: Exchange) -> Result<System, AssemblyError> {
+    assemble_watched(scene, bundles, settings, &|_| ())
+}
+
+/// [`assemble`], telling `progress` the finished share in [0, 1], from any thread.
+pub fn assemble_watched(
+    scene: &Scene,
+    bundles: &Bundles,
+    settings: Exchange,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<System, AssemblyError> {
+    // Look up what every bundle reflects and emits.
+    let (n, n_bands) = (bundles.n_bundles(), scene.n_bands());
+    let mut albedo = Block::zeros(n, n_bands);
+    let mut emission = Block::zeros(n, n_bands);
+    for (e, element) in bundles.elements().iter().enumerate() {
+        let Element::Patch(patch) = element else { return Err(AssemblyError::NotAPatch { element: e }) };
+        let surface = scene.surface_of(patch.facet);
+        let Some(brdf) = surface.brdf(patch.side) else { continue };
+        let Some(albedos) = brdf.lambertian() else {
+            return Err(AssemblyError::NotDiffuse { surface: surface.name.clone(), brdf: brdf.description() });
+        };
+        for i in bundles.bundles_of(e) {
+            for (band, a) in albedos.iter().enumerate() {
+                albedo.set(i, band, *a);
+                emission.set(i, band, surface.emitted(patch.side, band));
+            }
+        }
+    }
+
+    let exchange::Assembled { exchange, sinks, report } = exchange::compute(scene, bundles, settings, progress);
+    let exchange = Arc::new(exchange);
+    let etendue: Arc<[f64]> = bundles.etendue().into();
+    let root = Block::from_fn(n, n_bands, |i, band| albedo.get(i, band).sqrt());
+    let propagation = Propagation::new(exchange.clone(), etendue.clone());
+    let transport = Transport::new(Diagonal::new(albedo), propagation);
+    Ok(System { exchange, etendue, sinks, emission, transport, scattering_root: Diagonal::new(root), report })
+}
+
+impl System {
+    /// Bytes that assembly and storage of T for n bundles may take: the full matrix, and the list of its upper triangle.
+    pub fn memory_estimate(n_bundles: usize) -> u64 {
+        let n = n_bundles as u64;
+        let triangle = n.saturating_mul(n) / 2;
+        n.saturating_mul(n).saturating_mul(8).saturating_add(triangle.saturating_mul(24 + 16)).saturating_add(n * 8192)
+    }
+
+    pub fn n_bundles(&self) -> usize {
+        self.etendue.len()
+    }
+
+    pub fn n_bands(&self) -> usize {
+        self.emission.n_columns()
+    }
+
+    /// T, m² sr.
+    pub fn exchange(&self) -> &Matrix {
+        &self.exchange
+    }
+
+    /// μ, m² sr.
+    pub fn etendue(&self) -> &[f64] {
+        &self.etendue
+    }
+
+    /// n × 2: étendue that escapes into the environment, and that ends on black backs, m² sr.
+    pub fn sinks(&self) -> &Block {
+        &self.sinks
+    }
+
+    /// E, n × bands.
+    pub fn emission(&self) -> &Block {
+        &self.emission
+    }
+
+    /// K = S G, unformed; S and G are its parts.
+    pub fn transport(&self) -> &Transport {
+        &self.transport
+    }
+
+    /// How T was computed.
+    pub fn report(&self) -> &ExchangeReport {
+        &self.report
+    }
+
+    /// The four laws, as they hold in the matrices. Cost O(entries).
+    pub fn laws(&self) -> Laws {
+        Laws::measure(self)
+    }
+
+    /// What a solver sees.
+    pub fn equation(&self) -> Equation<'_> {
+        Equation {
+            transport: &self.transport,
+            emission: &self.emission,
+            self_adjoint: Some(SelfAdjoint {
+                etendue: &self.etendue,
+                propagation: self.transport.propagation(),
+                scattering_root: &self.scattering_root,
+            }),
+        }
+    }
+
+    /// Incident irradiance of every bundle from solved radiance, W m⁻²: H = π G L in the one bin of a hemisphere.
+    pub fn irradiance(&self, radiance: &Block) -> Block {
+        let mut incident = Block::zeros(radiance.n_rows(), radiance.n_columns());
+        self.transport.propagation().apply(radiance, &mut incident);
+        incident.values_mut().iter_mut().for_each(|v| *v *= PI);
+        incident
+    }
+}

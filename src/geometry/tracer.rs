@@ -1,0 +1,272 @@
+//! Where a ray first meets a polygon, and whether a segment is free.
+//!
+//! Boxes are culled in f32 on an `obvhs` tree, in coordinates centred on and scaled to the scene; polygons are met in f64. A ray
+//! starts *on* a polygon and leaves out that polygon's whole plane by identity, so there is no epsilon. The inside test looks at
+//! the exact sign of the ray's side of each edge, so that two polygons which share an edge never both let a ray through.
+
+use super::{Polygon, Ray, Vec3, plane::group_by_plane};
+use glam::Vec3A;
+use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::Bvh2, bvh2::builder::build_bvh2, ray::Ray as BoxRay, ray::RayHit};
+use robust::{Coord3D, orient3d};
+use std::time::Duration;
+
+/// Half-width by which boxes of the normalised scene (radius 1) are grown: f32 rounding of origin, direction and box (3 × 6e-8)
+/// along a chord of length 4, and a margin of five.
+const BOX_MARGIN: f32 = 4e-6;
+
+/// Finds what rays meet among a fixed set of convex polygons. Results do not depend on the number of threads.
+#[derive(Clone)]
+pub struct Tracer {
+    shapes: Vec<Shape>,
+    /// Polygons of one plane (either orientation) share a number.
+    planes: Vec<u32>,
+    tree: Bvh2,
+    centre: Vec3,
+    radius: f64,
+}
+
+#[derive(Clone)]
+struct Shape {
+    id: u32,
+    plane: u32,
+    normal: Vec3,
+    vertices: Vec<Vec3>,
+}
+
+/// Where a ray ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Number of the polygon in the list the tracer was made from.
+    pub polygon: usize,
+    /// Ray parameter of the point.
+    pub t: f64,
+    /// True if the ray arrives on the front.
+    pub front: bool,
+}
+
+impl Tracer {
+    /// Builds the tree. Cost O(n log n).
+    pub fn new(polygons: &[&Polygon]) -> Self {
+        let planes = group_by_plane(polygons);
+        let everything: Vec<usize> = (0..polygons.len()).collect();
+        Self::over(polygons, planes, &everything)
+    }
+
+    /// A tracer over those polygons alone that can block a segment between two points of the scene: a polygon with all vertices
+    /// of the scene on one side of its plane (a wall of a convex room) never does. Polygons keep their numbers.
+    pub fn occluders(polygons: &[&Polygon]) -> Self {
+        let planes = group_by_plane(polygons);
+        let blocking: Vec<usize> = (0..polygons.len()).filter(|&i| !is_supporting(polygons[i], polygons)).collect();
+        Self::over(polygons, planes, &blocking)
+    }
+
+    fn over(polygons: &[&Polygon], planes: Vec<u32>, chosen: &[usize]) -> Self {
+        // Centre and scale, so that f32 boxes are as good for a pin as for a planet.
+        let corners = || chosen.iter().flat_map(|&i| polygons[i].vertices());
+        let (low, high) =
+            corners().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
+        let (centre, radius) = if chosen.is_empty() {
+            (Vec3::ZERO, 1.0)
+        } else {
+            (0.5 * (low + high), (0.5 * low.distance(high)).max(f64::MIN_POSITIVE))
+        };
+        let to_box = |v: &Vec3| Vec3A::from(((*v - centre) / radius).as_vec3());
+        let boxes: Vec<Aabb> = chosen
+            .iter()
+            .map(|&i| {
+                let mut bounds = Aabb::empty();
+                polygons[i].vertices().iter().for_each(|v| {
+                    bounds.extend(to_box(v));
+                });
+                bounds.min -= Vec3A::splat(BOX_MARGIN);
+                bounds.max += Vec3A::splat(BOX_MARGIN);
+                bounds
+            })
+            .collect();
+        let mut build_time = Duration::ZERO;
+        let tree = build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut build_time);
+
+        // Lay the polygons out in the order of the leaves.
+        let shapes = tree
+            .primitive_indices
+            .iter()
+            .map(|&k| {
+                let id = chosen[k as usize];
+                let polygon = polygons[id];
+                Shape {
+                    id: id as u32,
+                    plane: planes[id],
+                    normal: polygon.normal(),
+                    vertices: polygon.vertices().to_vec(),
+                }
+            })
+            .collect();
+        Self { shapes, planes, tree, centre, radius }
+    }
+
+    /// Number of polygons that can be met.
+    pub fn n_polygons(&self) -> usize {
+        self.shapes.len()
+    }
+
+    /// The first polygon met at t > 0. A ray that starts on polygon `start` meets none of that polygon's plane.
+    pub fn closest(&self, ray: &Ray, start: Option<usize>) -> Option<Hit> {
+        if self.shapes.is_empty() {
+            return None;
+        }
+        let plane = start.map_or(u32::MAX, |id| self.planes[id]);
+        let mut best: Option<Hit> = None;
+        let (box_ray, entry) = self.box_ray(ray, f64::INFINITY)?;
+        let beyond = exact_target(ray);
+        self.tree.ray_traverse(box_ray, &mut RayHit::none(), |_, k| {
+            let shape = &self.shapes[k];
+            let nearest = best.map_or(f64::INFINITY, |hit| hit.t);
+            if shape.plane == plane {
+                return f32::INFINITY;
+            }
+            let Some(hit) = shape.meet(ray, beyond, nearest) else { return f32::INFINITY };
+            // Of two polygons met at one point take the lower number, whatever the order of the boxes.
+            if hit.t < nearest || best.is_none_or(|b| hit.polygon < b.polygon) {
+                best = Some(hit);
+            }
+            round_up(hit.t - entry)
+        });
+        best
+    }
+
+    /// True if some polygon crosses the open segment between the two points, those in the planes of the polygons `ends` left out.
+    pub fn occluded(&self, from: Vec3, to: Vec3, ends: [usize; 2]) -> bool {
+        if self.shapes.is_empty() {
+            return false;
+        }
+        let ray = Ray { origin: from, direction: to - from };
+        let planes = ends.map(|id| self.planes[id]);
+        let Some((box_ray, _)) = self.box_ray(&ray, 1.0) else { return false };
+        let beyond = exact_target(&ray);
+        !self.tree.ray_traverse_miss(box_ray, |_, k| {
+            let shape = &self.shapes[k];
+            let blocks = !planes.contains(&shape.plane) && shape.meet(&ray, beyond, 1.0).is_some_and(|hit| hit.t < 1.0);
+            if blocks { 0.0 } else { f32::INFINITY }
+        })
+    }
+
+    /// Calls `visit(handle, id, corners)` for every polygon whose box meets the box of these points, each once.
+    pub(super) fn near(&self, points: impl Iterator<Item = Vec3>, mut visit: impl FnMut(u32, usize, &[Vec3])) {
+        let mut bounds = Aabb::empty();
+        for p in points {
+            bounds.extend(Vec3A::from(((p - self.centre) / self.radius).as_vec3()));
+        }
+        self.tree.aabb_traverse(bounds, |tree, node| {
+            let node = &tree.nodes[node as usize];
+            for k in node.first_index..node.first_index + node.prim_count {
+                let shape = &self.shapes[k as usize];
+                visit(k, shape.id as usize, &shape.vertices);
+            }
+            true
+        });
+    }
+
+    /// Normal and one point of the plane of a polygon, by handle.
+    pub(super) fn plane_of(&self, handle: u32) -> (Vec3, Vec3) {
+        let shape = &self.shapes[handle as usize];
+        (shape.normal, shape.vertices[0])
+    }
+
+    /// True if one of these polygons (see [`Shaft::Undecided`](super::Shaft::Undecided)) crosses the open segment.
+    pub fn blocked_by(&self, handles: &[u32], from: Vec3, to: Vec3) -> bool {
+        let ray = Ray { origin: from, direction: to - from };
+        let beyond = exact_target(&ray);
+        handles.iter().any(|&k| self.shapes[k as usize].meet(&ray, beyond, 1.0).is_some_and(|hit| hit.t < 1.0))
+    }
+
+    /// True if the two polygons lie in one plane, facing alike or opposite.
+    pub fn coplanar(&self, a: usize, b: usize) -> bool {
+        self.planes[a] == self.planes[b]
+    }
+
+    /// The ray in the coordinates of the boxes, moved up to the scene where it starts far outside: (ray, parameter of its start).
+    fn box_ray(&self, ray: &Ray, t_max: f64) -> Option<(BoxRay, f64)> {
+        let origin = (ray.origin - self.centre) / self.radius;
+        let direction = ray.direction / self.radius;
+        let mut entry = 0.0;
+        if origin.length_squared() > 4.0 {
+            entry = ((-origin.dot(direction) / direction.length_squared()) - 1.5 / direction.length()).max(0.0);
+        }
+        let start = (origin + entry * direction).as_vec3();
+        let t_max = if t_max.is_finite() { round_up(t_max - entry) } else { f32::INFINITY };
+        (t_max > 0.0).then(|| (BoxRay::new(start.into(), direction.as_vec3().into(), 0.0, t_max), entry))
+    }
+}
+
+/// f32 at or above t, so that the boxes of equal hits are still looked at.
+fn round_up(t: f64) -> f32 {
+    (t * (1.0 + 1e-6)) as f32
+}
+
+/// The second point of the ray's line. It stands for the direction wherever a sign must be exact.
+fn exact_target(ray: &Ray) -> Vec3 {
+    ray.origin + ray.direction
+}
+
+impl Shape {
+    /// Where the ray from its origin through `beyond` meets this polygon, at 0 < t ≤ `nearest`.
+    fn meet(&self, ray: &Ray, beyond: Vec3, nearest: f64) -> Option<Hit> {
+        let approach = self.normal.dot(ray.direction);
+        let t = self.normal.dot(self.vertices[0] - ray.origin) / approach;
+        if !(t > 0.0 && t <= nearest) {
+            return None;
+        }
+
+        // Inside: the ray passes every edge on the same side.
+        let (mut left, mut right) = (false, false);
+        let mut a = self.vertices[self.vertices.len() - 1] - ray.origin;
+        for (k, vertex) in self.vertices.iter().enumerate() {
+            let b = *vertex - ray.origin;
+            let previous = if k == 0 { self.vertices.len() - 1 } else { k - 1 };
+            let side = side_of_edge(ray, beyond, a, b, self.vertices[previous], *vertex);
+            left |= side > 0.0;
+            right |= side < 0.0;
+            if left && right {
+                return None;
+            }
+            a = b;
+        }
+        Some(Hit { polygon: self.id as usize, t, front: approach < 0.0 })
+    }
+}
+
+/// The sign of d · (a × b): on which side the ray passes the edge from `from` to `to`; antisymmetric in the two, exactly.
+fn side_of_edge(ray: &Ray, beyond: Vec3, a: Vec3, b: Vec3, from: Vec3, to: Vec3) -> f64 {
+    let d = ray.direction;
+    let normal = a.cross(b);
+    let side = d.dot(normal);
+
+    // Bound what rounding can have done, in the products and in `beyond`; decide closer calls exactly.
+    let size = a.abs().max_element() * b.abs().max_element();
+    let slack = d.abs().max_element() + 2.0 * beyond.abs().max_element();
+    let wobble = (from.abs().max_element() + to.abs().max_element()) * (a.abs().max_element() + b.abs().max_element());
+    if side.abs() > 32.0 * f64::EPSILON * (size * slack + wobble * d.abs().max_element()) {
+        return side;
+    }
+    let coord = |v: Vec3| Coord3D { x: v.x, y: v.y, z: v.z };
+    // orient3d(p, q, r, s) is the sign of (p − s) · ((q − s) × (r − s)).
+    orient3d(coord(beyond), coord(from), coord(to), coord(ray.origin))
+}
+
+/// True if no vertex of the scene lies strictly on one of the polygon's sides.
+fn is_supporting(polygon: &Polygon, all: &[&Polygon]) -> bool {
+    let (origin, normal) = (polygon.centroid(), polygon.normal());
+    let (mut above, mut below) = (false, false);
+    for v in all.iter().flat_map(|p| p.vertices()) {
+        let offset = *v - origin;
+        let height = normal.dot(offset);
+        // A vertex counts as on the plane within the rounding of its own coordinates.
+        let rounding = 16.0 * f64::EPSILON * (v.abs().max_element() + offset.length());
+        above |= height > rounding;
+        below |= height < -rounding;
+        if above && below {
+            return false;
+        }
+    }
+    true
+}

@@ -1,0 +1,114 @@
+//! Conjugate gradients in the étendue inner product.
+//!
+//! ```text
+//! (I − S^½ G S^½) u = S^½ G E,      L = E + S^½ u,      ⟨a, b⟩ = Σ μᵢ aᵢ bᵢ
+//! ```
+//!
+//! Needs the self-adjoint form, checks it by two products, and ρ(K) < 1. One product an iteration; the residual of L is S^½ times
+//! the residual of u. Every band has its own step lengths and rests when it is done. Source: Hestenes and Stiefel (1952); Saad
+//! (2003), algorithm 6.18.
+
+use super::monitor::Monitor;
+use super::report::{conclude, relative_residual};
+use super::{Observer, Solution, SolveError, Solver};
+use crate::linalg::{Block, Equation, SelfAdjoint};
+
+/// |⟨x, G y⟩ − ⟨G x, y⟩| relative to ‖x‖ ‖G y‖: rounding leaves some n^½ ulp, a wrong μ or a lost symmetry leaves far more.
+const SELF_ADJOINT: f64 = 1e-10;
+
+/// Iterates until the residual is below the tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cg {
+    /// On ‖E + K L − L‖∞ / ‖E‖∞.
+    pub tolerance: f64,
+}
+
+impl Solver for Cg {
+    fn name(&self) -> &'static str {
+        "cg"
+    }
+
+    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+        let method = self.name();
+        let mut monitor = Monitor::new(method, self.tolerance, observer);
+        let form = equation.self_adjoint.ok_or(SolveError::NoSelfAdjointForm { method })?;
+        check_self_adjoint(method, form)?;
+        monitor.count_applies(2);
+
+        // Start from u = 0: r = S^½ G E.
+        let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
+        let zeros = || Block::zeros(n, n_bands);
+        let (mut u, mut r, mut scratch, mut image) = (zeros(), zeros(), zeros(), zeros());
+        form.propagation.apply(equation.emission, &mut scratch);
+        monitor.count_applies(1);
+        form.scattering_root.apply(&scratch, &mut r);
+        let mut p = r.clone();
+        let (mut radiance, mut residual) = (equation.emission.clone(), zeros());
+        let mut norms: Vec<f64> =
+            (0..n_bands).map(|band| inner(form.etendue, r.column(band), r.column(band))).collect();
+
+        let stop = loop {
+            form.scattering_root.apply(&r, &mut residual);
+            if let Some(stop) = monitor.check(relative_residual(equation.emission, &residual), &radiance)? {
+                break stop;
+            }
+
+            // image = (I − S^½ G S^½) p.
+            form.scattering_root.apply(&p, &mut image);
+            form.propagation.apply(&image, &mut scratch);
+            monitor.count_applies(1);
+            form.scattering_root.apply(&scratch, &mut image);
+            for (a, p) in image.values_mut().iter_mut().zip(p.values()) {
+                *a = p - *a;
+            }
+
+            for (band, norm) in norms.iter_mut().enumerate() {
+                if *norm == 0.0 {
+                    continue;
+                }
+                // Step to the minimum along p, and turn the next direction conjugate.
+                let curvature = inner(form.etendue, p.column(band), image.column(band));
+                if curvature.is_nan() || curvature <= 0.0 {
+                    let iteration = monitor.work.n_iterations;
+                    return Err(SolveError::NotPositiveDefinite { method, band, iteration, curvature });
+                }
+                let step = *norm / curvature;
+                add_scaled(u.column_mut(band), step, p.column(band));
+                add_scaled(r.column_mut(band), -step, image.column(band));
+                let next = inner(form.etendue, r.column(band), r.column(band));
+                let turn = next / *norm;
+                p.column_mut(band).iter_mut().zip(r.column(band)).for_each(|(p, r)| *p = r + turn * *p);
+                *norm = next;
+            }
+            form.scattering_root.apply(&u, &mut radiance);
+            radiance.add_scaled(1.0, equation.emission);
+        };
+        conclude(method, equation, radiance, stop, monitor.work, monitor.history)
+    }
+}
+
+/// ⟨a, b⟩ = Σ μᵢ aᵢ bᵢ.
+fn inner(etendue: &[f64], a: &[f64], b: &[f64]) -> f64 {
+    etendue.iter().zip(a).zip(b).map(|((mu, a), b)| mu * a * b).sum()
+}
+
+fn add_scaled(x: &mut [f64], factor: f64, y: &[f64]) {
+    x.iter_mut().zip(y).for_each(|(x, y)| *x += factor * y);
+}
+
+/// Probes ⟨x, G y⟩ = ⟨G x, y⟩ with two vectors without structure. Two products.
+fn check_self_adjoint(method: &'static str, form: SelfAdjoint<'_>) -> Result<(), SolveError> {
+    let n = form.etendue.len();
+    let wave = |frequency: f64| Block::from_fn(n, 1, |i, _| (frequency * (i as f64 + 1.0)).sin());
+    let (x, y) = (wave(1.618_033_988_749_895), wave(2.414_213_562_373_095));
+    let (mut gx, mut gy) = (Block::zeros(n, 1), Block::zeros(n, 1));
+    form.propagation.apply(&x, &mut gx);
+    form.propagation.apply(&y, &mut gy);
+    let product = |a: &Block, b: &Block| inner(form.etendue, a.column(0), b.column(0));
+    let scale = (product(&x, &x) * product(&gy, &gy)).sqrt() + (product(&gx, &gx) * product(&y, &y)).sqrt();
+    let violation = (product(&x, &gy) - product(&gx, &y)).abs() / scale.max(f64::MIN_POSITIVE);
+    if violation > SELF_ADJOINT {
+        return Err(SolveError::NotSelfAdjoint { method, violation, allowed: SELF_ADJOINT });
+    }
+    Ok(())
+}

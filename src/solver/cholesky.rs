@@ -1,0 +1,83 @@
+//! Cholesky factorization of the symmetrised equation, band by band.
+//!
+//! ```text
+//! (I − M^½ S^½ G S^½ M^−½) v = M^½ S^½ G E,      L = E + S^½ M^−½ v
+//! ```
+//!
+//! Needs the self-adjoint form; the matrix is symmetric because M G is, and positive definite where ρ(K) < 1. Writes it out in
+//! full. Cost ⅓ n³ a band, half of LU's.
+
+use super::report::{Work, conclude};
+use super::{Observer, Solution, SolveError, Solver, Stop};
+use crate::linalg::{Block, CholeskyFactor, Dense, Equation, SelfAdjoint, Sparse};
+use rayon::prelude::*;
+
+/// Cholesky by faer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cholesky;
+
+impl Solver for Cholesky {
+    fn name(&self) -> &'static str {
+        "cholesky"
+    }
+
+    fn is_direct(&self) -> bool {
+        true
+    }
+
+    fn solve(&self, equation: Equation<'_>, _: &mut dyn Observer) -> Result<Solution, SolveError> {
+        let method = self.name();
+        let form = equation.self_adjoint.ok_or(SolveError::NoSelfAdjointForm { method })?;
+        let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
+        let weight: Vec<f64> = form.etendue.iter().map(|mu| mu.sqrt()).collect();
+
+        // The right-hand side, S^½ G E, for all bands at once.
+        let mut incident = Block::zeros(n, n_bands);
+        form.propagation.apply(equation.emission, &mut incident);
+        let mut right = Block::zeros(n, n_bands);
+        form.scattering_root.apply(&incident, &mut right);
+
+        let mut answer = Block::zeros(n, n_bands);
+        for band in 0..n_bands {
+            let factor = CholeskyFactor::new(&symmetrised(form, band, &weight))
+                .map_err(|source| SolveError::Factor { method, band, source })?;
+            let mut v = Block::from_fn(n, 1, |i, _| weight[i] * right.get(i, band));
+            factor.solve(&mut v);
+            let unweighted = v.column(0).iter().zip(&weight).map(|(v, w)| v / w);
+            answer.column_mut(band).iter_mut().zip(unweighted).for_each(|(u, v)| *u = v);
+        }
+
+        let mut radiance = Block::zeros(n, n_bands);
+        form.scattering_root.apply(&answer, &mut radiance);
+        radiance.add_scaled(1.0, equation.emission);
+        let work = Work { n_applies: 1, products: 1.0, ..Work::default() };
+        conclude(method, equation, radiance, Stop::Direct, work, Vec::new())
+    }
+}
+
+/// I − M^½ S^½ G S^½ M^−½ of one band.
+fn symmetrised(form: SelfAdjoint<'_>, band: usize, weight: &[f64]) -> Dense {
+    let n = weight.len();
+    let root = Sparse::from_operator(form.scattering_root, band);
+    let mut matrix = Dense::zeros(n, n);
+    matrix.values_mut().par_chunks_mut(n.max(1)).enumerate().for_each_init(
+        || (vec![0.0; n], vec![0.0; n]),
+        |(row, mixed), (i, out)| {
+            // Row i of S^½ G, mixed from the rows of G that the element of i couples.
+            mixed.fill(0.0);
+            let (columns, values) = root.row_entries(i);
+            for (k, s) in columns.iter().zip(values) {
+                form.propagation.row(band, *k as usize, row);
+                mixed.iter_mut().zip(row.iter()).for_each(|(m, g)| *m += s * g);
+            }
+            // Times S^½ on the right, weighted and taken from the identity.
+            for (l, m) in mixed.iter().enumerate() {
+                let (columns, values) = root.row_entries(l);
+                columns.iter().zip(values).for_each(|(j, s)| out[*j as usize] -= m * s);
+            }
+            out.iter_mut().zip(weight).for_each(|(v, w)| *v *= weight[i] / w);
+            out[i] += 1.0;
+        },
+    );
+    matrix
+}

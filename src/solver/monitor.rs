@@ -1,0 +1,59 @@
+//! What every iteration is asked: converged, diverged, out of budget, told to stop?
+
+use super::report::Work;
+use super::{Iteration, Observer, SolveError, Stop};
+use crate::linalg::Block;
+use std::ops::ControlFlow;
+
+/// A method that has spent this many products ends with [`Stop::Budget`]; an observer may end it sooner.
+const BUDGET: f64 = 1e6;
+
+/// A residual this much above the best so far is divergence, not a hump.
+const DIVERGENCE: f64 = 1e8;
+
+/// Keeps the history of one solve and decides when it ends.
+pub(super) struct Monitor<'a> {
+    method: &'static str,
+    tolerance: f64,
+    observer: &'a mut dyn Observer,
+    best: f64,
+    pub work: Work,
+    pub history: Vec<f64>,
+}
+
+impl<'a> Monitor<'a> {
+    pub fn new(method: &'static str, tolerance: f64, observer: &'a mut dyn Observer) -> Self {
+        Self { method, tolerance, observer, best: f64::INFINITY, work: Work::default(), history: Vec::new() }
+    }
+
+    /// Records an iterate and its residual; `Some` ends the solve.
+    pub fn check(&mut self, residual: f64, iterate: &Block) -> Result<Option<Stop>, SolveError> {
+        let index = self.history.len();
+        self.work.n_iterations = index;
+        self.history.push(residual);
+        if residual.is_nan() {
+            return Err(SolveError::NotFinite { method: self.method, iteration: index });
+        }
+        self.best = self.best.min(residual);
+        if residual > DIVERGENCE * self.best.max(f64::MIN_POSITIVE) && residual > 1.0 {
+            return Err(SolveError::Diverged { method: self.method, iteration: index, residual, best: self.best });
+        }
+        let iteration = Iteration { index, products: self.work.products, residual, iterate };
+        let told = self.observer.observe(iteration);
+        Ok(if residual <= self.tolerance {
+            Some(Stop::Converged)
+        } else if told == ControlFlow::Break(()) {
+            Some(Stop::Observer)
+        } else if self.work.products >= BUDGET {
+            Some(Stop::Budget)
+        } else {
+            None
+        })
+    }
+
+    /// Counts whole products with K.
+    pub fn count_applies(&mut self, n: usize) {
+        self.work.n_applies += n;
+        self.work.products += n as f64;
+    }
+}

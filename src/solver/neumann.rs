@@ -1,0 +1,44 @@
+//! The Neumann series, bounce by bounce.
+//!
+//! ```text
+//! L = E + K E + K² E + …
+//! ```
+//!
+//! Needs ρ(K) < 1. One product a bounce; after k bounces the residual *is* the next term, Kᵏ⁺¹E. Never better than the spectral
+//! radius. Source: Neumann (1877); as bounces of light, Kajiya (1986), eq. 7.
+
+use super::monitor::Monitor;
+use super::report::{conclude, relative_residual};
+use super::{Observer, Solution, SolveError, Solver};
+use crate::linalg::{Block, Equation};
+
+/// Sums bounces until the next one is below the tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neumann {
+    /// On ‖E + K L − L‖∞ / ‖E‖∞.
+    pub tolerance: f64,
+}
+
+impl Solver for Neumann {
+    fn name(&self) -> &'static str {
+        "neumann"
+    }
+
+    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+        let mut monitor = Monitor::new(self.name(), self.tolerance, observer);
+        let mut radiance = equation.emission.clone();
+        let mut term = equation.emission.clone();
+        let mut next = Block::zeros(term.n_rows(), term.n_columns());
+        let stop = loop {
+            // The next bounce is the residual of the sum so far.
+            equation.transport.apply(&term, &mut next);
+            monitor.count_applies(1);
+            std::mem::swap(&mut term, &mut next);
+            if let Some(stop) = monitor.check(relative_residual(equation.emission, &term), &radiance)? {
+                break stop;
+            }
+            radiance.add_scaled(1.0, &term);
+        };
+        conclude(self.name(), equation, radiance, stop, monitor.work, monitor.history)
+    }
+}

@@ -1,0 +1,103 @@
+//! An answer and how it was come by.
+
+use super::{Bracket, SolveError, bracket};
+use crate::linalg::{Block, Equation};
+use std::fmt;
+
+/// Why a solver stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// A factorization gave the answer.
+    Direct,
+    /// The residual fell below the tolerance.
+    Converged,
+    /// The products ran out first.
+    Budget,
+    /// The observer said so.
+    Observer,
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Direct => "direct",
+            Self::Converged => "converged",
+            Self::Budget => "budget",
+            Self::Observer => "observer",
+        })
+    }
+}
+
+/// L and the report on it.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// L, n × bands, W m⁻² sr⁻¹.
+    pub radiance: Block,
+    pub report: SolveReport,
+}
+
+/// What a solve cost and how good it is. Solvers do not time themselves: whoever calls them does.
+#[derive(Clone, Debug)]
+pub struct SolveReport {
+    pub method: &'static str,
+    pub stop: Stop,
+    pub n_iterations: usize,
+    /// Products with K (all bands at once).
+    pub n_applies: usize,
+    /// Products with K* (all bands at once).
+    pub n_adjoint_applies: usize,
+    /// Work in units of one product with K: entries touched / entries of K. Methods that read single rows or columns count here.
+    pub products: f64,
+    /// Residual by iteration, as the method knew it.
+    pub history: Vec<f64>,
+    /// ‖E + K L − L‖∞ / ‖E‖∞, worst band, recomputed from L (by one more product, not counted).
+    pub true_residual: f64,
+    /// L − below ≤ (I − K)⁻¹E ≤ L + above, whatever the method did; `None` where a row of K gains 1 or more.
+    pub bracket: Option<Bracket>,
+}
+
+/// Work counts, as a method keeps them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Work {
+    pub n_iterations: usize,
+    pub n_applies: usize,
+    pub products: f64,
+}
+
+/// Verifies an answer and writes its report. Two products with K.
+pub(super) fn conclude(
+    method: &'static str,
+    equation: Equation<'_>,
+    radiance: Block,
+    stop: Stop,
+    work: Work,
+    history: Vec<f64>,
+) -> Result<Solution, SolveError> {
+    let mut residual = Block::zeros(radiance.n_rows(), radiance.n_columns());
+    equation.residual(&radiance, &mut residual);
+    let true_residual = relative_residual(equation.emission, &residual);
+    if !true_residual.is_finite() {
+        return Err(SolveError::NotFinite { method, iteration: work.n_iterations });
+    }
+    let report = SolveReport {
+        method,
+        stop,
+        n_iterations: work.n_iterations,
+        n_applies: work.n_applies,
+        n_adjoint_applies: 0,
+        products: work.products,
+        history,
+        true_residual,
+        bracket: bracket::around(equation, &radiance, &residual),
+    };
+    Ok(Solution { radiance, report })
+}
+
+/// max over bands of ‖r‖∞ / ‖E‖∞; NaN if any entry is NaN. A band that emits nothing has residual 0 or ∞.
+pub(super) fn relative_residual(emission: &Block, residual: &Block) -> f64 {
+    let worst = |values: &[f64]| crate::linalg::max_abs(values);
+    emission.columns().zip(residual.columns()).map(|(e, r)| (worst(e), worst(r))).fold(0.0, |max: f64, (e, r)| {
+        let relative = if r == 0.0 { 0.0 } else { r / e };
+        if relative.is_nan() || max.is_nan() { f64::NAN } else { max.max(relative) }
+    })
+}
