@@ -1,1 +1,1 @@
-//! TODO-SKELETON
+//! Moments, tests and fits. Knows no light.
