@@ -69,7 +69,11 @@ impl Brdf for Phong {
             return 0.0;
         }
         let cosine = incident.dot(mirrored(outgoing));
-        if cosine > 0.0 { self.reflectance[band] * (self.exponent + 2.0) / TAU * cosine.powf(self.exponent) } else { 0.0 }
+        if cosine > 0.0 {
+            self.reflectance[band] * (self.exponent + 2.0) / TAU * cosine.powf(self.exponent)
+        } else {
+            0.0
+        }
     }
 
     /// Draws from cosⁿα about the mirror direction; what falls below the horizon is absorbed.
