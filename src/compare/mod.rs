@@ -1,1 +1,9 @@
-//! TODO-SKELETON
+//! Answers held against answers: norms, z-scores, rates.
+
+mod norm;
+mod rates;
+mod zscore;
+
+pub use norm::{relative_max, relative_rms};
+pub use rates::{Extrapolation, Level, ObservedOrder, RatesError, observed_order, richardson};
+pub use zscore::{ROUNDING_TOLERANCE, ZVerdict, compare_blocks};

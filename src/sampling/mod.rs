@@ -1,5 +1,13 @@
-//! Random and quasi-random numbers and what is made of them. Knows no light.
+//! Uniform numbers and what they are warped into. Knows no light; the only door to `rand_philox`.
+//!
+//! Points and directions are plain `[f64; 3]`. Every warp is a pure function of numbers uniform in [0, 1), and its density is
+//! the next function, so that a sample can be drawn from a random stream or from a low-discrepancy point alike.
 
-mod kronecker;
+mod alias;
+mod sobol;
+mod stream;
+pub mod warp;
 
-pub use kronecker::{Kronecker, mix};
+pub use alias::{AliasError, AliasRows, AliasTable, ROW_SUM_TOLERANCE};
+pub use sobol::{N_SOBOL_DIMENSIONS, Sobol};
+pub use stream::{Stream, Streams, mix_seed};

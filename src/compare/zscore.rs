@@ -1,0 +1,71 @@
+//! Is a random answer the deterministic one, within its own error bars, everywhere at once?
+
+use super::norm::check_shapes;
+use crate::linalg::Block;
+use crate::stats::{critical_z, sidak, two_sided_p, z_score};
+use serde::Serialize;
+
+/// What rounding may leave between two exact computations of one column, relative to its largest entry: some thousand unknowns times
+/// 2⁻⁵³, the accuracy that elimination keeps on a well-conditioned I − K.
+pub const ROUNDING_TOLERANCE: f64 = 1e-12;
+
+/// The outcome of many comparisons, corrected for their number.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ZVerdict {
+    /// Largest |z| anywhere; infinite where two exact numbers differ or one is not a number.
+    pub worst_z: f64,
+    /// Row and column of the largest |z|.
+    pub worst_at: (usize, usize),
+    /// Entries with an error bar, whose z-scores were looked at.
+    pub n_comparisons: usize,
+    /// Entries without: both sides exact, compared to rounding.
+    pub n_exact: usize,
+    /// Probability of a |z| this large somewhere, were the two equal (Šidák).
+    pub p_value: f64,
+    /// The |z| that would have been too large.
+    pub critical_z: f64,
+    /// p_value ≥ alpha.
+    pub agrees: bool,
+}
+
+/// Holds a mean with error bars against an exact reference, entry by entry, at family-wise significance `alpha`.
+///
+/// z = (mean − reference) / √(variance_of_mean + rounding²), with rounding = [`ROUNDING_TOLERANCE`] times the largest reference of the column.
+/// Entries whose variance is exactly zero are compared exactly, to that rounding; anything that is not a number disagrees, the
+/// variance of fewer than two samples included.
+///
+/// The scores are taken as normal and the variances as known: the caller sees to it that every entry has enough samples (for alpha =
+/// 1e-6 and thousands of entries, some thousands; more where scores are rare and large).
+///
+/// # Panics
+/// If the shapes differ.
+pub fn compare_blocks(reference: &Block, mean: &Block, variance_of_mean: &Block, alpha: f64) -> ZVerdict {
+    check_shapes(reference, mean);
+    check_shapes(reference, variance_of_mean);
+    let (mut worst_z, mut worst_at) = (0.0, (0, 0));
+    let (mut n_comparisons, mut n_exact) = (0, 0);
+    for c in 0..reference.n_columns() {
+        let rounding = ROUNDING_TOLERANCE * reference.column(c).iter().fold(0.0, |size: f64, v| size.max(v.abs()));
+        let entries = reference.column(c).iter().zip(mean.column(c)).zip(variance_of_mean.column(c)).enumerate();
+        for (row, ((reference, mean), variance)) in entries {
+            // Score the entry by its error bar, or by whether two exact numbers are the same.
+            let z = if *variance == 0.0 {
+                n_exact += 1;
+                if (mean - reference).abs() <= rounding { 0.0 } else { f64::INFINITY }
+            } else {
+                n_comparisons += 1;
+                z_score(*mean, *reference, variance + rounding * rounding).abs()
+            };
+            let z = if z.is_nan() || !variance.is_finite() { f64::INFINITY } else { z };
+            if z > worst_z {
+                (worst_z, worst_at) = (z, (row, c));
+            }
+        }
+    }
+
+    // Ask how likely the worst of so many is; two exact numbers that differ leave no doubt.
+    let p_value = if worst_z == f64::INFINITY { 0.0 } else { sidak(two_sided_p(worst_z), n_comparisons) };
+    let p_value = if n_comparisons == 0 && worst_z == 0.0 { 1.0 } else { p_value };
+    let critical_z = critical_z(alpha, n_comparisons);
+    ZVerdict { worst_z, worst_at, n_comparisons, n_exact, p_value, critical_z, agrees: p_value >= alpha }
+}

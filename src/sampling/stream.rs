@@ -1,0 +1,75 @@
+//! Random streams that are keyed, not advanced: any draw can be had again without the draws before it.
+
+use rand_philox::{Philox, splitmix64};
+
+/// 2⁶⁴ over the golden ratio, made odd: keeps a zero seed away from the fixed point of `splitmix64`.
+const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// A 64-bit seed for one of many tasks: for one `seed`, different keys give different results.
+pub fn mix_seed(seed: u64, key: u64) -> u64 {
+    splitmix64(splitmix64(seed.wrapping_add(GOLDEN)).wrapping_add(GOLDEN).wrapping_add(key))
+}
+
+/// The streams of one experiment and one purpose: the same seed used for two purposes gives unrelated numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Streams {
+    key: [u32; 2],
+}
+
+impl Streams {
+    /// `purpose` says who draws, e.g. `"path tracer"`; any two different texts are independent.
+    pub fn new(seed: u64, purpose: &str) -> Self {
+        let key =
+            purpose.bytes().fold(mix_seed(seed, purpose.len() as u64), |key, byte| mix_seed(key, u64::from(byte)));
+        Self { key: [key as u32, (key >> 32) as u32] }
+    }
+
+    /// The stream of sample number `sample` of start number `start` (a bundle, a pixel, a pair).
+    ///
+    /// Cost: nothing until the first draw.
+    #[inline]
+    pub fn stream(&self, start: u32, sample: u64) -> Stream {
+        Stream { philox: Philox::new(self.key, u128::from(start) << 96 | u128::from(sample) << 32) }
+    }
+}
+
+/// One stream of uniform numbers: Philox4x32-10 (Salmon et al. 2011), a function of (seed, purpose, start, sample) and of how many
+/// numbers were drawn, so results do not depend on threads or on order.
+///
+/// Holds 2³² blocks of two numbers each; a longer one would run into the stream of the next sample.
+#[derive(Clone, Debug)]
+pub struct Stream {
+    philox: Philox,
+}
+
+impl Stream {
+    /// The stream of (start, sample) without a purpose. For many streams of one seed, [`Streams`] mixes the seed once.
+    pub fn new(seed: u64, start: u32, sample: u64) -> Self {
+        Streams::new(seed, "").stream(start, sample)
+    }
+
+    /// 64 random bits.
+    #[inline]
+    pub fn bits(&mut self) -> u64 {
+        self.philox.next_u64()
+    }
+
+    /// Uniform in [0, 1), a multiple of 2⁻⁵³.
+    #[inline]
+    pub fn uniform(&mut self) -> f64 {
+        unit_interval(self.bits())
+    }
+
+    /// Two numbers uniform in [0, 1): one block of the generator, where an even number was drawn before.
+    #[inline]
+    pub fn uniform2(&mut self) -> [f64; 2] {
+        [self.uniform(), self.uniform()]
+    }
+}
+
+/// The upper 53 bits as a number in [0, 1).
+#[inline]
+pub(super) fn unit_interval(bits: u64) -> f64 {
+    const SCALE: f64 = 1.0 / (1u64 << 53) as f64;
+    (bits >> 11) as f64 * SCALE
+}
