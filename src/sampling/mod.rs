@@ -4,10 +4,12 @@
 //! the next function, so that a sample can be drawn from a random stream or from a low-discrepancy point alike.
 
 mod alias;
+mod kronecker;
 mod sobol;
 mod stream;
 pub mod warp;
 
 pub use alias::{AliasError, AliasRows, AliasTable, ROW_SUM_TOLERANCE};
+pub use kronecker::{Kronecker, mix};
 pub use sobol::{N_SOBOL_DIMENSIONS, Sobol};
 pub use stream::{Stream, Streams, mix_seed};
