@@ -66,9 +66,7 @@ impl AliasTable {
 
     /// The probability of each outcome as the table has it, not as the weights had it.
     pub fn probabilities(&self) -> Vec<f64> {
-        let mut probabilities = vec![0.0; self.n_outcomes];
-        add_probabilities(&self.slots, |outcome, p| probabilities[outcome as usize] += p);
-        probabilities
+        implied_probabilities(&self.slots, self.n_outcomes)
     }
 }
 
@@ -132,13 +130,7 @@ impl AliasRows {
 
     /// The probability of each column of a row as the table has it; the rest is absorbed.
     pub fn probabilities(&self, row: usize) -> Vec<f64> {
-        let mut probabilities = vec![0.0; self.n_columns];
-        add_probabilities(&self.slots[self.starts[row]..self.starts[row + 1]], |outcome, p| {
-            if outcome != ABSORBED {
-                probabilities[outcome as usize] += p;
-            }
-        });
-        probabilities
+        implied_probabilities(&self.slots[self.starts[row]..self.starts[row + 1]], self.n_columns)
     }
 }
 
@@ -150,12 +142,19 @@ fn draw(slots: &[Slot], uniform: f64) -> u32 {
     if scaled - (k as f64) < slot.threshold { slot.here } else { slot.alias }
 }
 
-fn add_probabilities(slots: &[Slot], mut add: impl FnMut(u32, f64)) {
-    let n = slots.len() as f64;
+/// Sums each outcome's shares of its slots, absorption left out.
+fn implied_probabilities(slots: &[Slot], n_outcomes: usize) -> Vec<f64> {
+    let mut sums = vec![Remainder { high: 0.0, low: 0.0 }; n_outcomes];
+    let mut add = |outcome: u32, share: f64| {
+        if let Some(sum) = sums.get_mut(outcome as usize) {
+            sum.add(share);
+        }
+    };
     for slot in slots {
-        add(slot.here, slot.threshold / n);
-        add(slot.alias, (1.0 - slot.threshold) / n);
+        add(slot.here, slot.threshold);
+        add(slot.alias, 1.0 - slot.threshold);
     }
+    sums.into_iter().map(|sum| sum.value() / slots.len() as f64).collect()
 }
 
 fn check_length(n_columns: usize) -> Result<(), AliasError> {

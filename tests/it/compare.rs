@@ -1,0 +1,154 @@
+//! Norms, verdicts and rates.
+
+use etendue::compare::{
+    Level, ROUNDING_TOLERANCE, RatesError, compare_blocks, observed_order, relative_max, relative_rms, richardson,
+};
+use etendue::linalg::Block;
+use etendue::sampling::Streams;
+use etendue::stats::Moments;
+
+#[test]
+fn norms_weigh_as_they_say() {
+    let reference = Block::from_fn(2, 2, |r, c| [[3.0, 0.0], [4.0, 2.0]][c][r]);
+    let value = Block::from_fn(2, 2, |r, c| reference.get(r, c) + [[1.0, 2.0], [0.0, -4.0]][c][r]);
+    assert_eq!(relative_max(&value, &reference), 1.0);
+    // Σ w d² = 2·1 + 1·4 + 2·0 + 1·16 = 22, Σ w r² = 2·9 + 0 + 2·16 + 4 = 54.
+    assert_eq!(relative_rms(&value, &reference, &[2.0, 1.0]), 22f64.sqrt() / 54f64.sqrt());
+    let zero = Block::zeros(2, 2);
+    assert_eq!((relative_max(&zero, &zero), relative_rms(&zero, &zero, &[1.0, 1.0])), (0.0, 0.0));
+    assert_eq!(relative_max(&value, &zero), f64::INFINITY);
+    let broken = Block::from_fn(2, 2, |_, _| f64::NAN);
+    assert!(relative_max(&broken, &reference).is_nan() && relative_rms(&broken, &reference, &[1.0, 1.0]).is_nan());
+}
+
+/// Means and variances of a fair experiment about `reference`, with row 0 known exactly.
+fn experiment(reference: &Block, seed: u64, bias: f64) -> (Block, Block) {
+    let (mut mean, mut variance) = (reference.clone(), Block::zeros(reference.n_rows(), reference.n_columns()));
+    let streams = Streams::new(seed, "experiment");
+    for c in 0..reference.n_columns() {
+        for r in 1..reference.n_rows() {
+            let mut stream = streams.stream(r as u32, c as u64);
+            let exact = reference.get(r, c) + bias;
+            let m: Moments = (0..100).map(|_| exact + 0.2 * (stream.uniform() - 0.5)).collect();
+            mean.set(r, c, m.mean());
+            variance.set(r, c, m.variance_of_mean());
+        }
+    }
+    (mean, variance)
+}
+
+fn reference() -> Block {
+    Block::from_fn(40, 3, |r, c| 1.0 + r as f64 + 0.1 * c as f64)
+}
+
+#[test]
+fn fair_experiments_agree_about_as_often_as_promised() {
+    // A significance of 0.05 is too often wrong by design: of 1000 fair experiments, 50 ± 7 fail; the scores of a mean of
+    // 100 uniform numbers have slightly heavy (Student's) tails, so allow for twice as many, and at 1e-6 for none.
+    let mut n_failures = 0;
+    for seed in 0..1000 {
+        let (mean, variance) = experiment(&reference(), seed, 0.0);
+        let verdict = compare_blocks(&reference(), &mean, &variance, 0.05);
+        assert_eq!((verdict.n_comparisons, verdict.n_exact), (39 * 3, 3));
+        assert_eq!(verdict.agrees, verdict.worst_z <= verdict.critical_z);
+        n_failures += usize::from(!verdict.agrees);
+        assert!(compare_blocks(&reference(), &mean, &variance, 1e-6).agrees, "seed {seed}: {verdict:?}");
+    }
+    assert!((15..=150).contains(&n_failures), "{n_failures} of 1000");
+}
+
+#[test]
+fn biased_experiments_do_not() {
+    // A bias of ten standard errors, 10 × 0.2/√12/√100.
+    let (mean, variance) = experiment(&reference(), 5, 0.0577);
+    let verdict = compare_blocks(&reference(), &mean, &variance, 1e-6);
+    assert!(!verdict.agrees && verdict.p_value < 1e-6 && verdict.worst_z > 8.0, "{verdict:?}");
+}
+
+#[test]
+fn one_wrong_entry_is_found_and_named() {
+    let (mut mean, variance) = experiment(&reference(), 6, 0.0);
+    mean.set(17, 2, reference().get(17, 2) - 12.0 * variance.get(17, 2).sqrt());
+    let verdict = compare_blocks(&reference(), &mean, &variance, 1e-6);
+    assert!(!verdict.agrees && verdict.worst_at == (17, 2));
+    assert!((verdict.worst_z - 12.0).abs() < 1e-6, "{verdict:?}");
+}
+
+#[test]
+fn exact_entries_are_compared_to_rounding() {
+    let exact = reference();
+    let none = Block::zeros(40, 3);
+    let largest = exact.get(39, 1);
+    let off_by = |relative: f64| {
+        let mut mean = exact.clone();
+        mean.set(3, 1, exact.get(3, 1) + relative * largest);
+        compare_blocks(&exact, &mean, &none, 1e-6)
+    };
+    let close = off_by(0.5 * ROUNDING_TOLERANCE);
+    assert!(close.agrees && close.p_value == 1.0 && close.n_comparisons == 0 && close.n_exact == 120);
+    let far = off_by(2.0 * ROUNDING_TOLERANCE);
+    assert!(!far.agrees && far.worst_at == (3, 1) && far.worst_z == f64::INFINITY && far.p_value == 0.0);
+}
+
+#[test]
+fn what_is_not_a_number_never_agrees() {
+    let (mean, variance) = experiment(&reference(), 7, 0.0);
+    for which in 0..3 {
+        let mut blocks = [reference(), mean.clone(), variance.clone()];
+        blocks[which].set(8, 0, f64::NAN);
+        let verdict = compare_blocks(&blocks[0], &blocks[1], &blocks[2], 1e-6);
+        assert!(!verdict.agrees && verdict.worst_at == (8, 0), "{verdict:?}");
+    }
+}
+
+#[test]
+fn rounding_in_a_variance_is_no_disagreement() {
+    // A score that never varies but for its last bit has an error bar far below what its reference is known to.
+    let mut mean = reference();
+    let mut variance = Block::zeros(40, 3);
+    mean.set(4, 0, reference().get(4, 0) * (1.0 + 4.0 * f64::EPSILON));
+    variance.set(4, 0, 1e-36);
+    assert!(compare_blocks(&reference(), &mean, &variance, 1e-6).agrees);
+}
+
+#[test]
+fn orders_are_observed() {
+    let errors: Vec<(f64, f64)> = [0.4, 0.2, 0.1, 0.05].map(|h: f64| (h, 3.0 * h.powf(1.5))).to_vec();
+    let order = observed_order(&errors).unwrap();
+    assert!((order.order - 1.5).abs() < 1e-13 && order.standard_error < 1e-13 && order.n_levels == 4);
+    assert_eq!(observed_order(&errors[..2]).unwrap().standard_error, f64::INFINITY);
+    assert!(matches!(observed_order(&[(0.1, 1.0), (0.05, 0.0)]), Err(RatesError::Fit(_))));
+}
+
+#[test]
+fn richardson_finds_limit_and_order() {
+    // Doubling error in the differences: the order's last digits go as ulp(value) / (difference · ln ratio).
+    for order in [0.5, 1.0, 1.7, 2.0, 4.0] {
+        for steps in [[0.4, 0.2, 0.1], [1.0, 0.55, 0.37]] {
+            let levels = steps.map(|step: f64| Level { step, value: 2.0 - 0.3 * step.powf(order) });
+            let found = richardson(levels).unwrap();
+            assert!((found.order - order).abs() < 1e-11, "{found:?}");
+            assert!((found.limit - 2.0).abs() < 1e-12, "{found:?}");
+            assert!((found.finest_error - 0.3 * steps[2].powf(order)).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn richardson_refuses_what_does_not_converge() {
+    let levels = |steps: [f64; 3], values: [f64; 3]| {
+        let mut k = 0;
+        steps.map(|step| {
+            k += 1;
+            Level { step, value: values[k - 1] }
+        })
+    };
+    let halves = [0.4, 0.2, 0.1];
+    for values in [[1.0, 2.0, 1.5], [1.0, 2.0, 4.0], [1.0, 1.0, 1.0], [1.0, 2.0, 2.0], [1.0, 2.0, 3.0]] {
+        assert!(matches!(richardson(levels(halves, values)), Err(RatesError::NotConverging { .. })), "{values:?}");
+    }
+    let values = [1.0, 2.0, 2.5];
+    assert!(matches!(richardson(levels([0.4, 0.2, 0.2], values)), Err(RatesError::Steps { level: 2, .. })));
+    assert!(matches!(richardson(levels([0.4, -0.2, -0.3], values)), Err(RatesError::Steps { level: 1, .. })));
+    assert!(matches!(richardson(levels(halves, [1.0, f64::NAN, 2.5])), Err(RatesError::NotFinite { level: 1, .. })));
+}

@@ -1,0 +1,8 @@
+//! Integration tests, one binary; a module a subject.
+
+mod compare;
+mod medium;
+mod sampling;
+mod scattering;
+mod sphere;
+mod stats;
