@@ -3,7 +3,7 @@
 //! # Geometry
 //! The box 0 ≤ x ≤ 1, 0 ≤ y ≤ 0.8, 0 ≤ z ≤ 1.2, facing inward, its ceiling glowing. On the floor stands a block of
 //! 0.34 × 0.45 × 0.44 (x, y, z) centred on (0.45, 0.55), turned by 25° about the vertical, facing outward. The
-//! block has no bottom, and the floor is four trapezoids that leave the block's footprint out: the scene is one
+//! block has no bottom, and the floor is four quadrilaterals that leave the block's footprint out: the scene is one
 //! closed polyhedral surface, no part of it covered by another, every edge shared by exactly two polygons, vertex
 //! for vertex, bit for bit.
 //!
@@ -32,7 +32,7 @@ const BLOCK_HEIGHT: f64 = 0.45;
 const BLOCK_TURN_DEGREES: f64 = 25.0;
 const DARK: [f64; 3] = [0.0; 3];
 
-/// The closed box with a block. Surfaces `floor` (four trapezoids), `ceiling` (emits), `left` (x = 0), `front` (z =
+/// The closed box with a block. Surfaces `floor` (four quadrilaterals), `ceiling` (emits), `left` (x = 0), `front` (z =
 /// 1.2), `right`, `back`, and `block` (five faces).
 pub fn corner_box() -> Scene {
     build().expect("the corner box's own numbers are valid")
