@@ -1,6 +1,7 @@
-//! Integration tests, one binary; a module a subject.
+//! Integration tests, through the public interface, in one binary; a module a subject.
 
 mod compare;
+mod gallery;
 mod medium;
 mod sampling;
 mod scattering;
