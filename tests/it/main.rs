@@ -2,7 +2,9 @@
 
 mod compare;
 mod gallery;
+mod image;
 mod medium;
+mod report;
 mod sampling;
 mod scattering;
 mod sphere;

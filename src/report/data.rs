@@ -1,0 +1,95 @@
+//! The numbers behind the figures and tables, as CSV.
+
+use super::csv::{Csv, Field};
+use crate::study::{EstimatorRun, Refinement, SolverRun, Truncation};
+
+/// solver, iteration, products, residual, error: one row an iteration.
+pub fn convergence(solvers: &[SolverRun]) -> Vec<u8> {
+    let mut csv = Csv::new(&["solver", "iteration", "products", "residual", "error"]);
+    for run in solvers {
+        for (i, p) in run.history.iter().enumerate() {
+            let [products, residual, error] = [p.products, p.residual, p.error].map(Field::Number);
+            csv.row(&[Field::Text(&run.solver), Field::Count(i as u64), products, residual, error]);
+        }
+    }
+    csv.into_bytes()
+}
+
+/// One row a solver; an absent bound is empty.
+pub fn solvers(solvers: &[SolverRun]) -> Vec<u8> {
+    let mut csv = Csv::new(&[
+        "solver",
+        "kind",
+        "stop",
+        "n_applies",
+        "n_adjoint_applies",
+        "products",
+        "seconds",
+        "true_residual",
+        "error",
+        "error_bound",
+    ]);
+    for run in solvers {
+        csv.row(&[
+            Field::Text(&run.solver),
+            Field::Text(&run.kind),
+            Field::Text(&run.stop),
+            Field::Count(run.n_applies as u64),
+            Field::Count(run.n_adjoint_applies as u64),
+            Field::Number(run.products),
+            Field::Number(run.seconds),
+            Field::Number(run.true_residual),
+            Field::Number(run.error),
+            run.error_bound.map_or(Field::Text(""), Field::Number),
+        ]);
+    }
+    csv.into_bytes()
+}
+
+/// bounces, error, bound.
+pub fn truncation(series: &[Truncation]) -> Vec<u8> {
+    let mut csv = Csv::new(&["bounces", "error", "bound"]);
+    for t in series {
+        csv.row(&[Field::Count(t.bounces as u64), Field::Number(t.error), Field::Number(t.bound)]);
+    }
+    csv.into_bytes()
+}
+
+/// estimator, truth, samples_per_bundle, error, standard_error: one row a sample count.
+pub fn monte_carlo(estimators: &[EstimatorRun]) -> Vec<u8> {
+    let mut csv = Csv::new(&["estimator", "truth", "samples_per_bundle", "error", "standard_error"]);
+    for run in estimators {
+        for p in &run.points {
+            let [error, standard_error] = [p.error, p.standard_error].map(Field::Number);
+            csv.row(&[
+                Field::Text(&run.estimator),
+                Field::Text(&run.truth),
+                Field::Count(p.samples_per_bundle),
+                error,
+                standard_error,
+            ]);
+        }
+    }
+    csv.into_bytes()
+}
+
+/// patch_size, n_bundles, error, noise: one row a level.
+pub fn refinement(study: &Refinement) -> Vec<u8> {
+    let mut csv = Csv::new(&["patch_size", "n_bundles", "error", "noise"]);
+    for l in &study.levels {
+        let [patch_size, error, noise] = [l.patch_size, l.error, l.noise].map(Field::Number);
+        csv.row(&[patch_size, Field::Count(l.n_bundles as u64), error, noise]);
+    }
+    csv.into_bytes()
+}
+
+/// surface, band, matrix, path_tracer, standard_error, discretisation_error.
+pub fn surfaces(study: &Refinement) -> Vec<u8> {
+    let mut csv = Csv::new(&["surface", "band", "matrix", "path_tracer", "standard_error", "discretisation_error"]);
+    for s in &study.surfaces {
+        let [matrix, paths, noise, mesh] =
+            [s.matrix, s.path_tracer, s.standard_error, s.discretisation_error].map(Field::Number);
+        csv.row(&[Field::Text(&s.surface), Field::Text(&s.band), matrix, paths, noise, mesh]);
+    }
+    csv.into_bytes()
+}

@@ -1,0 +1,20 @@
+//! Figures worth a paper: each takes plain data, fills a sheet, and becomes SVG and PNG through the same strokes.
+
+mod axis;
+mod convergence;
+mod monte_carlo;
+mod paint;
+mod palette;
+mod panel;
+mod refinement;
+mod sheet;
+mod strip;
+mod truncation;
+
+pub use convergence::convergence;
+pub use monte_carlo::monte_carlo;
+pub use paint::{to_png, to_svg};
+pub use refinement::refinement;
+pub use sheet::Sheet;
+pub use strip::strip;
+pub use truncation::truncation;

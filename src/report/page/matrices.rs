@@ -1,0 +1,48 @@
+//! How good the matrices are, whatever is computed from them.
+
+use super::markup::{definitions, escape, section};
+use super::verdict::percent;
+use crate::report::number::{count, scientific, significant};
+use crate::study::StudyOutcome;
+
+/// A law that holds to this is written as kept: rounding over sums of some thousand terms.
+const KEPT: f64 = 1e-12;
+
+/// The four laws as measured, and how the exchange came about.
+pub fn matrices(outcome: &StudyOutcome) -> String {
+    let laws = &outcome.laws;
+    let cards = [
+        ("Reciprocity", "T = Tᵀ, R = Rᵀ", laws.reciprocity, "Light flows alike in both directions."),
+        ("Closure", "Σⱼ Tᵢⱼ = μᵢ", laws.closure, "Every ray arrives somewhere, if only outside."),
+        ("Positivity", "T ≥ 0, R ≥ 0", laws.positivity, "No bundle sends darkness."),
+        ("Conservation", "Σₒ Rₒᵢ ≤ μᵢ", laws.conservation, "No surface returns more than it receives."),
+    ];
+    let cards = cards.map(|(name, equation, violation, meaning)| {
+        // A NaN is not kept either.
+        let class = if violation.abs() <= KEPT { "law" } else { "law broken" };
+        format!(
+            "<div class=\"{class}\"><h3>{name}</h3><p class=\"equation\">{equation}</p><p class=\"violation\">{}</p><p>{}</p></div>\n",
+            escape(&if violation == 0.0 { "exact".into() } else { scientific(violation, 2) }),
+            escape(meaning)
+        )
+    });
+
+    let exchange = &outcome.exchange;
+    let share = |n: usize| format!("{} ({})", count(n as u64), percent(n as f64 / exchange.n_pairs.max(1) as f64));
+    let facts = definitions(&[
+        ("pairs of patches that face each other", count(exchange.n_pairs as u64)),
+        ("by quadrature alone, no ray needed", share(exchange.n_unoccluded)),
+        ("visibility sampled by rays", share(exchange.n_sampled)),
+        ("found hidden by every ray", share(exchange.n_hidden)),
+        ("worst quadrature error estimate, of μ", significant(exchange.quadrature_error, 2)),
+        ("visibility noise of a row sum, of μ", significant(exchange.visibility_error, 2)),
+        ("closure before the repair", significant(exchange.closure_before_repair, 2)),
+        ("sweeps of symmetric scaling, T ← D T D", count(exchange.repair_sweeps as u64)),
+        ("change of L by the repair", significant(exchange.repair_change, 2)),
+        ("étendue that leaves the scene", percent(exchange.escaped)),
+    ]);
+    let lead = "Four laws hold in the assembled matrices whatever their accuracy; the worst relative violation is measured, not assumed. \
+                T is the exchange of étendue between bundles, R the scattering in étendue form, μ the étendue of a bundle.";
+    let body = format!("<div class=\"laws\">\n{}</div>\n<h3>How the exchange came about</h3>\n{facts}", cards.concat());
+    section("laws", "The four laws, as measured", lead, &body)
+}

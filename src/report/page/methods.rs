@@ -1,0 +1,124 @@
+//! What was computed from the matrix: solvers, the truncated series, random walks.
+
+use super::markup::{Column, Table, section};
+use super::verdict::{SIGNIFICANCE, agrees};
+use super::{FigureOnPage, figure};
+use crate::report::number::{count, products, scientific, seconds, significant};
+use crate::study::{EstimatorRun, StudyOutcome};
+
+/// Convergence figure and the table of all solvers.
+pub fn solvers(outcome: &StudyOutcome, on_page: &FigureOnPage) -> String {
+    use Column::{Numbers, Words};
+    let mut table = Table::new(&[
+        ("solver", Words),
+        ("kind", Words),
+        ("stopped", Words),
+        ("products", Numbers),
+        ("time", Numbers),
+        ("true residual", Numbers),
+        ("error", Numbers),
+        ("error bound", Numbers),
+    ]);
+    for run in &outcome.solvers {
+        let reference = run.solver == outcome.reference_solver;
+        let error = if reference { "reference".into() } else { scientific(run.error, 2) };
+        let bound = run.error_bound.map_or("—".into(), |bound| scientific(bound, 2));
+        table.row(&[
+            &run.solver,
+            &run.kind,
+            &run.stop,
+            &products(run.products),
+            &seconds(run.seconds),
+            &scientific(run.true_residual, 2),
+            &error,
+            &bound,
+        ]);
+    }
+    let lead = format!(
+        "The discrete truth is the answer by {}. Every other solver is held against it; the residual is recomputed from the answer, \
+         and the bound trusts no solver at all: it needs only the residual and the absorption of the scene.",
+        outcome.reference_solver
+    );
+    let shown = figure(
+        on_page,
+        "Error and residual of every iterative solver against products with K, logarithmic",
+        "Error ‖L − L_ref‖∞ / ‖L_ref‖∞ and residual ‖E + K L − L‖∞ / ‖E‖∞ against work, in products with K.",
+    );
+    let caption = "Every solver. Work is entries of K touched, over entries of K; for direct solvers, operations over those of a product.";
+    section("solvers", "Solvers", &lead, &(shown + &table.html(caption)))
+}
+
+/// Truncation figure.
+pub fn truncation(outcome: &StudyOutcome, on_page: &FigureOnPage) -> String {
+    let enough = outcome.truncation.iter().find(|t| t.error < 0.01);
+    let enough = enough.map_or(String::new(), |t| {
+        let plural = if t.bounces == 1 { "bounce leaves" } else { "bounces leave" };
+        format!(" Here {} {plural} out less than one per cent.", t.bounces)
+    });
+    let lead = format!(
+        "Whoever stops after k bounces leaves out Kᵏ⁺¹E + Kᵏ⁺²E + …; since K ≥ 0, that is at most ‖Kᵏ⁺¹E‖∞ / (1 − ‖K‖∞).{enough}"
+    );
+    let shown = figure(
+        on_page,
+        "Truncation error of the Neumann series and its bound against the number of bounces, logarithmic",
+        "Error of E + K E + … + KᵏE in the maximum norm, relative to the solution, beside the bound known beforehand.",
+    );
+    section("truncation", "How many bounces are enough", &lead, &shown)
+}
+
+/// Monte Carlo figure and the verdicts.
+pub fn estimators(outcome: &StudyOutcome, on_page: &FigureOnPage) -> String {
+    use Column::{Numbers, Words};
+    let mut table = Table::new(&[
+        ("estimator", Words),
+        ("truth", Words),
+        ("samples a bundle", Numbers),
+        ("error", Numbers),
+        ("standard error", Numbers),
+        ("slope", Numbers),
+        ("largest |z|", Numbers),
+        ("of", Numbers),
+        ("p", Numbers),
+        ("time", Numbers),
+        ("verdict", Words),
+    ]);
+    for run in &outcome.estimators {
+        let last = run.points.last();
+        let number = |value: Option<f64>| value.map_or("—".into(), |v| significant(v, 2));
+        table.row(&[
+            &run.estimator,
+            &run.truth,
+            &last.map_or("—".into(), |p| count(p.samples_per_bundle)),
+            &number(last.map(|p| p.error)),
+            &number(last.map(|p| p.standard_error)),
+            &significant(run.slope, 3),
+            &significant(run.worst_z, 3),
+            &count(run.n_comparisons as u64),
+            &significant(run.p_value, 2),
+            &seconds(run.seconds),
+            verdict(run),
+        ]);
+    }
+    let lead = "Walks on the matrix estimate the discrete truth and must hit it within their own error bars. The path tracer never sees the \
+                matrix: it estimates the continuous truth, and its distance from the matrix levels off at the discretisation error.";
+    let shown = figure(
+        on_page,
+        "Error of every estimator against samples per bundle, both logarithmic, beside its own standard error and a line of slope minus one half",
+        "Étendue-weighted root mean square difference from the discrete solution (markers), and what the standard errors predict (lines).",
+    );
+    let caption = format!(
+        "z-scores over all bundles and bands at the largest sample count; p is the probability of one this large, corrected for their number \
+         (Šidák), and below {} the verdict is disagreement.",
+        significant(SIGNIFICANCE, 1)
+    );
+    section("estimators", "Random answers", lead, &(shown + &table.html(&caption)))
+}
+
+fn verdict(run: &EstimatorRun) -> &'static str {
+    match (run.truth.as_str(), agrees(run)) {
+        ("discrete", true) => "agrees",
+        ("discrete", false) => "disagrees",
+        (_, true) => "mesh not yet visible",
+        (_, false) => "mesh visible",
+    }
+}

@@ -1,0 +1,53 @@
+//! The matrix against the scene itself.
+
+use super::markup::{Column, Table, section};
+use super::verdict::percent;
+use super::{FigureOnPage, figure};
+use crate::report::number::{significant, with_error};
+use crate::study::StudyOutcome;
+
+/// Refinement figure and the means of every surface at the finest level.
+pub fn refinement(outcome: &StudyOutcome, on_page: &FigureOnPage) -> String {
+    use Column::{Numbers, Words};
+    let study = &outcome.refinement;
+    let mut table = Table::new(&[
+        ("surface", Words),
+        ("band", Words),
+        ("matrix", Numbers),
+        ("path tracer", Numbers),
+        ("difference", Numbers),
+        ("discretisation error", Numbers),
+    ]);
+    let mut above = "";
+    for mean in &study.surfaces {
+        // Name a surface once.
+        let surface = if mean.surface == above { "" } else { &mean.surface };
+        above = &mean.surface;
+        table.row(&[
+            surface,
+            &mean.band,
+            &significant(mean.matrix, 5),
+            &with_error(mean.path_tracer, mean.standard_error),
+            &percent((mean.matrix - mean.path_tracer) / mean.path_tracer),
+            &significant(mean.discretisation_error, 2),
+        ]);
+    }
+    let agreement = if study.agrees { "agrees" } else { "does not agree" };
+    let lead = format!(
+        "Finer patches bring the discrete truth to the continuous one, at observed order {}. At the finest level every surface's mean {agreement} \
+         with the path tracer's within discretisation plus statistical error.",
+        with_error(study.observed_order, study.order_standard_error)
+    );
+    let shown = figure(
+        on_page,
+        "Difference of the surface means from the path tracer against patch size, both logarithmic, with the fitted order",
+        "Étendue-weighted root mean square difference of the surface means from the path tracer's, relative; whiskers and the shaded floor are \
+         the path tracer's own noise.",
+    );
+    let means = if study.surfaces.is_empty() {
+        String::new()
+    } else {
+        table.html("Mean outgoing radiance of every surface at the finest level, W m⁻² sr⁻¹.")
+    };
+    section("refinement", "From the matrix to the scene", &lead, &(shown + &means))
+}
