@@ -2,10 +2,12 @@
 
 mod exchange;
 mod laws;
+mod measurement;
 mod operators;
 mod system;
 
 pub use exchange::{Exchange, ExchangeReport, Repair};
 pub use laws::Laws;
+pub use measurement::{Gather, Measurement};
 pub use operators::{Propagation, Transport};
 pub use system::{AssemblyError, System, assemble, assemble_watched};

@@ -18,6 +18,7 @@ pub struct System {
     emission: Block,
     transport: Transport,
     scattering_root: Diagonal,
+    repair_scale: Vec<f64>,
     report: ExchangeReport,
 }
 
@@ -64,13 +65,14 @@ pub fn assemble_watched(
         }
     }
 
-    let exchange::Assembled { exchange, sinks, report } = exchange::compute(scene, bundles, settings, progress);
+    let exchange::Assembled { exchange, sinks, repair_scale, report } = exchange::compute(scene, bundles, settings, progress);
     let exchange = Arc::new(exchange);
     let etendue: Arc<[f64]> = bundles.etendue().into();
     let root = Block::from_fn(n, n_bands, |i, band| albedo.get(i, band).sqrt());
     let propagation = Propagation::new(exchange.clone(), etendue.clone());
     let transport = Transport::new(Diagonal::new(albedo), propagation);
-    Ok(System { exchange, etendue, sinks, emission, transport, scattering_root: Diagonal::new(root), report })
+    let scattering_root = Diagonal::new(root);
+    Ok(System { exchange, etendue, sinks, emission, transport, scattering_root, repair_scale, report })
 }
 
 impl System {
@@ -117,6 +119,27 @@ impl System {
     /// How T was computed.
     pub fn report(&self) -> &ExchangeReport {
         &self.report
+    }
+
+    /// The same system with the closure repair undone: T ← D⁻¹ T D⁻¹. Copies T.
+    pub fn without_repair(&self) -> Self {
+        let inverse: Vec<f64> = self.repair_scale.iter().map(|d| 1.0 / d).collect();
+        if inverse.is_empty() {
+            return self.clone();
+        }
+        let mut exchange = (*self.exchange).clone();
+        exchange.scale_symmetric(&inverse);
+        let exchange = Arc::new(exchange);
+        let propagation = Propagation::new(exchange.clone(), self.etendue.clone());
+        let sinks = Block::from_fn(self.n_bundles(), 2, |i, sink| self.sinks.get(i, sink) * inverse[i]);
+        Self {
+            exchange,
+            sinks,
+            transport: Transport::new(self.transport.scattering().clone(), propagation),
+            repair_scale: Vec::new(),
+            report: ExchangeReport { repair: None, ..self.report },
+            ..self.clone()
+        }
     }
 
     /// The four laws, as they hold in the matrices. Cost O(entries).

@@ -39,6 +39,13 @@ impl Shaft {
             let below = corners().all(|v| height(normal, point, *v) <= 0.0);
             !(above || below)
         });
+        if !handles.is_empty() {
+            let sides = side_planes(a.0, b.0);
+            let outside = |occluder: &[Vec3], (normal, point): &(Vec3, Vec3)| {
+                occluder.iter().all(|v| height(*normal, *point, *v) >= 0.0)
+            };
+            handles.retain(|&handle| !sides.iter().any(|plane| outside(tracer.corners_of(handle), plane)));
+        }
         if handles.is_empty() {
             return Self::Clear;
         }
@@ -52,6 +59,37 @@ impl Shaft {
         };
         if handles.iter().any(cuts) { Self::Blocked } else { Self::Undecided(handles) }
     }
+}
+
+/// The planes that bound the hull of two polygons from the side, outward normal and a point of each: those through an edge of one
+/// and a corner of the other with no corner of either above.
+fn side_planes(a: &Polygon, b: &Polygon) -> Vec<(Vec3, Vec3)> {
+    let mut planes = Vec::new();
+    for (one, other) in [(a, b), (b, a)] {
+        let v = one.vertices();
+        for (k, start) in v.iter().enumerate() {
+            let edge = v[(k + 1) % v.len()] - *start;
+            for apex in other.vertices() {
+                let normal = edge.cross(*apex - *start);
+                let length = normal.length();
+                if length <= 1e-9 * edge.length() * apex.distance(*start) {
+                    continue;
+                }
+                let (mut above, mut below) = (false, false);
+                for corner in v.iter().chain(other.vertices()) {
+                    let height = height(normal / length, *start, *corner);
+                    above |= height > 0.0;
+                    below |= height < 0.0;
+                }
+                if !above {
+                    planes.push((normal / length, *start));
+                } else if !below {
+                    planes.push((-normal / length, *start));
+                }
+            }
+        }
+    }
+    planes
 }
 
 /// Signed height of a point above a plane; zero within the rounding of the coordinates.

@@ -172,6 +172,11 @@ impl Tracer {
         (shape.normal, shape.vertices[0])
     }
 
+    /// Corners of a polygon, by handle.
+    pub(super) fn corners_of(&self, handle: u32) -> &[Vec3] {
+        &self.shapes[handle as usize].vertices
+    }
+
     /// True if one of these polygons (see [`Shaft::Undecided`](super::Shaft::Undecided)) crosses the open segment.
     pub fn blocked_by(&self, handles: &[u32], from: Vec3, to: Vec3) -> bool {
         let ray = Ray { origin: from, direction: to - from };

@@ -1,1 +1,5 @@
-//! TODO-SKELETON
+//! Answers with their errors, for whoever needs one that is not another renderer's.
+
+mod picture;
+
+pub use picture::{pictures, to_image};

@@ -2,6 +2,8 @@
 
 mod camera;
 mod error;
+mod filter;
+mod hash;
 mod surface;
 mod validate;
 

@@ -1,10 +1,18 @@
 //! Experiments: what varies, what is held, what is recorded.
 
+mod error;
 mod outcome;
 mod provenance;
+mod refinement;
+mod run;
+mod watch;
 
+pub use error::StudyError;
 pub use outcome::{
     EstimatorRun, ExchangeSummary, HistoryPoint, LawsMeasured, Pictures, Refinement, RefinementLevel, SamplePoint,
     SolverRun, StudyOutcome, SurfaceMean, Truncation,
 };
 pub use provenance::Provenance;
+pub use refinement::surface_means;
+pub use run::{StudySettings, run, tessellations};
+pub use watch::Watch;

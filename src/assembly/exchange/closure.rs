@@ -29,8 +29,8 @@ pub fn violation(exchange: &Matrix, sinks: &Block, etendue: &[f64]) -> f64 {
 }
 
 /// Scales the exchange and what is lost to sinks (one column a sink) until every row of both sums to its étendue, or until no sweep
-/// helps any more. Cost: two passes over T a sweep.
-pub fn repair(exchange: &mut Matrix, sinks: &mut Block, etendue: &[f64]) -> Repair {
+/// helps any more: what it did, and the diagonal of D. Cost: two passes over T a sweep.
+pub fn repair(exchange: &mut Matrix, sinks: &mut Block, etendue: &[f64]) -> (Repair, Vec<f64>) {
     let n = etendue.len();
     let mut scale = Block::from_fn(n, 1, |_, _| 1.0);
     let mut flow = Block::zeros(n, 1);
@@ -69,5 +69,5 @@ pub fn repair(exchange: &mut Matrix, sinks: &mut Block, etendue: &[f64]) -> Repa
     for s in 0..sinks.n_columns() {
         sinks.column_mut(s).iter_mut().zip(d).for_each(|(s, d)| *s *= d);
     }
-    repair
+    (repair, d.to_vec())
 }

@@ -70,6 +70,8 @@ pub(super) struct Assembled {
     pub exchange: Matrix,
     /// n × 2: étendue that escapes, étendue that ends on black backs.
     pub sinks: Block,
+    /// The diagonal of D in D T D; empty without repair.
+    pub repair_scale: Vec<f64>,
     pub report: ExchangeReport,
 }
 
@@ -151,11 +153,13 @@ pub(super) fn compute(
     drop(upper);
 
     report.closure_before_repair = closure::violation(&exchange, &sinks, etendue);
+    let mut repair_scale = Vec::new();
     if settings.repair {
-        report.repair = Some(closure::repair(&mut exchange, &mut sinks, etendue));
+        let (repair, scale) = closure::repair(&mut exchange, &mut sinks, etendue);
+        (report.repair, repair_scale) = (Some(repair), scale);
     }
     progress(1.0);
-    Assembled { exchange, sinks, report }
+    Assembled { exchange, sinks, repair_scale, report }
 }
 
 /// The pairs (i, j), j > i, that exchange anything.

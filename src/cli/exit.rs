@@ -1,0 +1,97 @@
+//! How a run ends.
+
+use super::output;
+use crate::assembly::AssemblyError;
+use crate::basis::BasisError;
+use crate::estimator::EstimatorError;
+use crate::report::ReportError;
+use crate::solver::SolveError;
+use crate::study::StudyError;
+use std::fmt;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+
+/// Exit codes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exit {
+    Input = 4,
+    Memory = 5,
+    NotConverged = 6,
+    Usage = 64,
+    Internal = 70,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit as u8)
+    }
+}
+
+/// Why a run ended, for the person who ran it.
+#[derive(Debug)]
+pub struct Failure {
+    exit: Exit,
+    message: String,
+}
+
+impl Failure {
+    pub fn new(exit: Exit, message: impl Into<String>) -> Self {
+        Self { exit, message: message.into() }
+    }
+
+    pub fn exit(&self) -> Exit {
+        self.exit
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Errors of scene files bring their own heading and position.
+        if self.message.starts_with("error[") {
+            return f.write_str(&self.message);
+        }
+        write!(f, "error: {}", self.message)
+    }
+}
+
+macro_rules! exits_with {
+    ($exit:expr, $($error:ty),+) => {
+        $(impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Self::new($exit, error.to_string())
+            }
+        })+
+    };
+}
+
+exits_with!(Exit::Input, BasisError, AssemblyError, EstimatorError, ReportError, crate::scene::SceneError);
+exits_with!(Exit::NotConverged, SolveError);
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
+        match error {
+            StudyError::Solve(error) => error.into(),
+            StudyError::NoSolver => Self::new(Exit::Internal, error.to_string()),
+            other => Self::new(Exit::Input, other.to_string()),
+        }
+    }
+}
+
+/// Prints what clap has to say: help and version are no errors.
+pub fn usage(error: &clap::Error) -> ExitCode {
+    let is_error = error.use_stderr();
+    if error.print().is_err() || is_error { Exit::Usage.into() } else { ExitCode::SUCCESS }
+}
+
+/// Runs, and turns a panic into a message and the code for a defect of this program.
+pub fn catch(run: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
+    let default = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|panic| {
+        let place = panic.location().map(|l| format!("{}:{}", l.file(), l.line())).unwrap_or_default();
+        output::error(&format!("internal error at {place}: {}", panic.payload_as_str().unwrap_or("unknown")));
+    }));
+    let result = catch_unwind(AssertUnwindSafe(run));
+    std::panic::set_hook(default);
+    let defect = "this is a defect of etendue, not of your input; please report it with the command line";
+    result.unwrap_or_else(|_| Err(Failure::new(Exit::Internal, defect)))
+}

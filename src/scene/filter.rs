@@ -1,0 +1,50 @@
+//! Pixel filters: how a pixel weighs the light around its centre.
+
+use super::PixelFilter;
+use std::f64::consts::PI;
+
+impl PixelFilter {
+    /// Half-width of the support, pixels.
+    pub fn radius(&self) -> f64 {
+        match *self {
+            Self::Box { radius } | Self::Tent { radius } => radius,
+            Self::Gaussian { standard_deviation } => 4.0 * standard_deviation,
+            Self::Mitchell { .. } | Self::CatmullRom => 2.0,
+            Self::Lanczos { lobes } => lobes,
+        }
+    }
+
+    /// One-dimensional weight at distance x from the centre, not normalised; a pixel weighs by the product of both axes.
+    ///
+    /// Sources: Mitchell and Netravali (1988), eq. 8; Duchon (1979).
+    pub fn eval(&self, x: f64) -> f64 {
+        let x = x.abs();
+        if x > self.radius() {
+            return 0.0;
+        }
+        match *self {
+            Self::Box { .. } => 1.0,
+            Self::Tent { radius } => 1.0 - x / radius,
+            Self::Gaussian { standard_deviation } => {
+                let bell = |x: f64| (-0.5 * (x / standard_deviation).powi(2)).exp();
+                bell(x) - bell(self.radius())
+            }
+            Self::Mitchell { b, c } => mitchell(x, b, c),
+            Self::CatmullRom => mitchell(x, 0.0, 0.5),
+            Self::Lanczos { lobes } => {
+                let sinc = |x: f64| if x == 0.0 { 1.0 } else { (PI * x).sin() / (PI * x) };
+                sinc(x) * sinc(x / lobes)
+            }
+        }
+    }
+}
+
+/// The two-parameter cubic on [0, 2].
+fn mitchell(x: f64, b: f64, c: f64) -> f64 {
+    let cubic = |k3: f64, k2: f64, k1: f64, k0: f64| (((k3 * x + k2) * x + k1) * x + k0) / 6.0;
+    if x < 1.0 {
+        cubic(12.0 - 9.0 * b - 6.0 * c, -18.0 + 12.0 * b + 6.0 * c, 0.0, 6.0 - 2.0 * b)
+    } else {
+        cubic(-b - 6.0 * c, 6.0 * b + 30.0 * c, -12.0 * b - 48.0 * c, 8.0 * b + 24.0 * c)
+    }
+}

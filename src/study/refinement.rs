@@ -1,0 +1,138 @@
+//! How the answer of the matrix approaches the scene's own as patches shrink.
+
+use super::outcome::{Refinement, RefinementLevel, SurfaceMean};
+use crate::basis::Bundles;
+use crate::compare::observed_order;
+use crate::estimator::Estimate;
+use crate::linalg::Block;
+use crate::scene::Scene;
+use crate::stats::critical_z;
+
+/// Orders a discretisation error is extrapolated with: below one, a mesh is not in its asymptotic range; flat patches give at most two.
+const ORDERS: (f64, f64) = (1.0, 2.0);
+
+/// One mesh's solution, by surface.
+#[derive(Clone, Debug)]
+pub struct LevelSolution {
+    pub patch_size: f64,
+    pub n_bundles: usize,
+    /// Étendue-weighted mean radiance: surfaces × bands.
+    pub means: Block,
+}
+
+impl LevelSolution {
+    pub fn new(scene: &Scene, bundles: &Bundles, radiance: &Block) -> Self {
+        let (means, _) = surface_means(scene, bundles, radiance, None);
+        Self { patch_size: bundles.resolution().patch_size, n_bundles: bundles.n_bundles(), means }
+    }
+}
+
+/// Étendue-weighted mean over each surface, and the variance of that mean from variances of independent entries.
+pub fn surface_means(scene: &Scene, bundles: &Bundles, values: &Block, variances: Option<&Block>) -> (Block, Block) {
+    let (n_surfaces, n_bands) = (scene.surfaces().len(), values.n_columns());
+    let mut weight = vec![0.0; n_surfaces];
+    let (mut means, mut spread) = (Block::zeros(n_surfaces, n_bands), Block::zeros(n_surfaces, n_bands));
+    for (i, mu) in bundles.etendue().iter().enumerate() {
+        let Some(patch) = bundles.patch(bundles.element_of(i).0) else { continue };
+        let surface = scene.facets()[patch.facet].surface;
+        weight[surface] += mu;
+        for band in 0..n_bands {
+            means.column_mut(band)[surface] += mu * values.get(i, band);
+            if let Some(variances) = variances {
+                spread.column_mut(band)[surface] += mu * mu * variances.get(i, band);
+            }
+        }
+    }
+    for band in 0..n_bands {
+        means.column_mut(band).iter_mut().zip(&weight).for_each(|(m, w)| *m /= w);
+        spread.column_mut(band).iter_mut().zip(&weight).for_each(|(v, w)| *v /= w * w);
+    }
+    (means, spread)
+}
+
+/// Holds every level, coarsest first and at least one, against the path tracer's means on the finest.
+///
+/// The finest level's discretisation error is extrapolated from its difference to the level before, |Δ| / (2ᵖ − 1), with p the
+/// order that the matrix's own levels show where there are three; for no surface is it taken below the average.
+pub fn compare(
+    scene: &Scene,
+    bundles: &Bundles,
+    levels: &[LevelSolution],
+    paths: &Estimate,
+    significance: f64,
+) -> Refinement {
+    let areas: Vec<f64> = scene.surfaces().iter().map(|s| s.area()).collect();
+    let (truth, variance) = surface_means(scene, bundles, &paths.mean, Some(&paths.variance_of_mean));
+    let size = weigh(&truth, &areas, |v| v * v);
+    let noise = (weigh(&variance, &areas, |v| v) / size).sqrt();
+    let difference = |a: &Block, b: &Block| {
+        let mut d = a.clone();
+        d.add_scaled(-1.0, b);
+        (weigh(&d, &areas, |v| v * v) / size).sqrt()
+    };
+
+    // Measure every level against the paths, and fit what is left once their noise is taken out.
+    let measured: Vec<RefinementLevel> = levels
+        .iter()
+        .map(|level| RefinementLevel {
+            patch_size: level.patch_size,
+            n_bundles: level.n_bundles,
+            error: difference(&level.means, &truth),
+            noise,
+        })
+        .collect();
+    let clear: Vec<(f64, f64)> = measured
+        .iter()
+        .filter(|level| level.error > 2.0 * noise)
+        .map(|level| (level.patch_size, (level.error * level.error - noise * noise).sqrt()))
+        .collect();
+    let fitted = observed_order(&clear);
+
+    // Extrapolate the finest level from the matrix's own differences.
+    let steps: Vec<f64> = levels.windows(2).map(|pair| difference(&pair[0].means, &pair[1].means)).collect();
+    let own_order = match steps[..] {
+        [.., coarse, fine] if fine > 0.0 => (coarse / fine).log2(),
+        _ => ORDERS.0,
+    };
+    let shrink = 2f64.powf(own_order.clamp(ORDERS.0, ORDERS.1)) - 1.0;
+    let finest_error = steps.last().map_or(f64::NAN, |step| step / shrink);
+
+    // Compare surface by surface.
+    let finest = &levels[levels.len() - 1];
+    let before = &levels[levels.len().saturating_sub(2)];
+    let critical = critical_z(significance, truth.values().len());
+    let mut agrees = true;
+    let mut surfaces = Vec::new();
+    for (s, surface) in scene.surfaces().iter().enumerate() {
+        for (band, name) in scene.bands().iter().enumerate() {
+            let (matrix, path_tracer) = (finest.means.get(s, band), truth.get(s, band));
+            let standard_error = variance.get(s, band).sqrt();
+            let step = (matrix - before.means.get(s, band)).abs();
+            let discretisation_error = (step / shrink).max(finest_error * path_tracer.abs());
+            // Two exact means may still differ by the rounding of their sums.
+            let rounding = 1e-12 * path_tracer.abs();
+            agrees &= (matrix - path_tracer).abs() <= discretisation_error + critical * standard_error + rounding;
+            surfaces.push(SurfaceMean {
+                surface: surface.name.clone(),
+                band: name.clone(),
+                matrix,
+                path_tracer,
+                standard_error,
+                discretisation_error,
+            });
+        }
+    }
+    Refinement {
+        levels: measured,
+        observed_order: fitted.as_ref().map_or(f64::NAN, |fit| fit.order),
+        order_standard_error: fitted.as_ref().map_or(f64::NAN, |fit| fit.standard_error),
+        finest_error,
+        agrees,
+        surfaces,
+    }
+}
+
+/// Σ area · f(value) over surfaces and bands.
+fn weigh(block: &Block, areas: &[f64], f: impl Fn(f64) -> f64) -> f64 {
+    block.columns().map(|column| column.iter().zip(areas).map(|(v, a)| a * f(*v)).sum::<f64>()).sum()
+}

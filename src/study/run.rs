@@ -1,0 +1,328 @@
+//! The main study: one scene, every solver and estimator, against each other.
+
+use super::outcome::*;
+use super::refinement::{self, LevelSolution};
+use super::watch::Watch;
+use super::{Provenance, StudyError};
+use crate::assembly::{Exchange, Gather, Measurement, System, assemble_watched};
+use crate::basis::{Bundles, Resolution};
+use crate::compare::{compare_blocks, relative_max, relative_rms};
+use crate::estimator::{Estimate, Estimator, MatrixWalk, PathTracer, Truth, estimate_range_watched};
+use crate::linalg::{Block, LinearOperator, max_abs};
+use crate::oracle;
+use crate::scene::Scene;
+use crate::solver::{self, Iteration, Solver};
+use crate::stats::fit_power_law;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+/// What is varied and what is held. No defaults here: these numbers are the experiment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StudySettings {
+    /// Of the finest mesh; the refinement levels double it.
+    pub resolution: Resolution,
+    /// Meshes compared, the finest included; three show an order.
+    pub n_levels: usize,
+    /// On ‖E + K L − L‖∞ / ‖E‖∞ of every iterative solver.
+    pub tolerance: f64,
+    pub exchange: Exchange,
+    /// Samples a bundle of the walks on the matrix: 1, 4, 16, … up to this.
+    pub walk_samples: u64,
+    /// Samples a bundle of the path tracer: likewise.
+    pub path_samples: u64,
+    /// Family-wise significance of every comparison.
+    pub significance: f64,
+    pub seed: u64,
+    /// How the picture is gathered; scenes without a camera have none.
+    pub gather: Gather,
+    /// Bounces shown one by one.
+    pub n_bounces: usize,
+}
+
+/// Runs the study. `watch` hears which stage is at work and how far it is.
+///
+/// # Errors
+/// A scene that cannot be cut or assembled, or a direct solve that fails: without a reference there is no study. An iterative
+/// method that fails is an error too, for it should not.
+pub fn run(
+    scene: &Scene,
+    settings: &StudySettings,
+    provenance: Provenance,
+    watch: &dyn Watch,
+) -> Result<StudyOutcome, StudyError> {
+    let mut stages = Stages { watch, seconds: Vec::new() };
+
+    // Assemble the finest mesh, and hold it to the four laws.
+    let bundles = Bundles::new(scene, settings.resolution)?;
+    let system = stages.time("assemble", |progress| assemble_watched(scene, &bundles, settings.exchange, progress))?;
+    let laws = system.laws();
+
+    // Solve it by every method.
+    let methods = solver::all(settings.tolerance);
+    let (reference_solver, truth, solvers) = stages.time("solve", |progress| solve_all(&methods, &system, progress))?;
+    let truncation = stages.time("truncate", |_| truncate(&system, &truth, 60));
+
+    // Estimate it by every estimator, walks against the matrix and paths against the scene.
+    let walks: [(&str, MatrixWalk); 2] =
+        stages.time("tables", |_| [("collision", MatrixWalk::collision(&system)), ("absorption", MatrixWalk::absorption(&system))]);
+    let mut estimators = Vec::new();
+    for (stage, walk) in &walks {
+        let run = |progress: &(dyn Fn(f64) + Sync)| estimate_growing(walk, settings.walk_samples, settings, &truth, &system, progress);
+        estimators.push(stages.time(&format!("{stage} walks"), run).0);
+    }
+    let tracer = PathTracer::new(scene, &bundles);
+    let (paths, path_estimate) = stages.time("trace paths", |progress| {
+        estimate_growing(&tracer, settings.path_samples, settings, &truth, &system, progress)
+    });
+    estimators.push(paths);
+
+    // Refine: the same scene on coarser meshes.
+    let refinement = stages.time("refine", |progress| -> Result<Refinement, StudyError> {
+        let mut levels = Vec::new();
+        for k in (1..settings.n_levels).rev() {
+            let patch_size = settings.resolution.patch_size * (1u64 << k) as f64;
+            let coarse = Bundles::new(scene, Resolution { patch_size, ..settings.resolution })?;
+            let system = assemble_watched(scene, &coarse, settings.exchange, progress)?;
+            let solution = solver::Cg { tolerance: settings.tolerance }.solve(system.equation(), &mut ())?;
+            levels.push(LevelSolution::new(scene, &coarse, &solution.radiance));
+        }
+        levels.push(LevelSolution::new(scene, &bundles, &truth));
+        Ok(refinement::compare(scene, &bundles, &levels, &path_estimate, settings.significance))
+    })?;
+
+    let pictures = match Measurement::new(scene, &bundles, settings.gather) {
+        Some(measurement) => Some(stages.time("gather", |progress| {
+            picture(&measurement, &system, &truth, settings.n_bounces, progress)
+        })),
+        None => None,
+    };
+
+    Ok(StudyOutcome {
+        scene: scene.name().to_string(),
+        provenance,
+        n_bundles: bundles.n_bundles(),
+        bands: scene.bands().to_vec(),
+        tessellations: tessellations(scene),
+        exchange: summarise(&system, settings, &truth)?,
+        laws: LawsMeasured {
+            reciprocity: laws.reciprocity,
+            closure: laws.closure,
+            positivity: laws.positivity,
+            conservation: laws.conservation,
+        },
+        reference_solver,
+        solvers,
+        truncation,
+        estimators,
+        refinement,
+        stages: stages.seconds,
+        pictures,
+    })
+}
+
+/// Times stages and tells who watches.
+struct Stages<'a> {
+    watch: &'a dyn Watch,
+    seconds: Vec<(String, f64)>,
+}
+
+impl Stages<'_> {
+    fn time<T>(&mut self, stage: &str, work: impl FnOnce(&(dyn Fn(f64) + Sync)) -> T) -> T {
+        let start = Instant::now();
+        let watch = self.watch;
+        watch.progress(stage, 0.0);
+        let result = work(&|done| watch.progress(stage, done));
+        watch.progress(stage, 1.0);
+        self.seconds.push((stage.to_string(), start.elapsed().as_secs_f64()));
+        result
+    }
+}
+
+/// One sentence for every curved shape that was replaced by polygons.
+pub fn tessellations(scene: &Scene) -> Vec<String> {
+    let sentence = |surface: &crate::scene::Surface| {
+        surface.tessellation.as_ref().map(|t| {
+            let (name, shape, n, deviation) = (&surface.name, t.shape, t.n_polygons, t.deviation);
+            format!("{shape} '{name}' stands as {n} polygons, at most {deviation:.2e} m off")
+        })
+    };
+    scene.surfaces().iter().filter_map(sentence).collect()
+}
+
+/// Runs every method; the first direct one is the reference that the histories of all are held against.
+fn solve_all(
+    methods: &[Box<dyn Solver>],
+    system: &System,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<(String, Block, Vec<SolverRun>), StudyError> {
+    let mut reference: Option<(String, Block)> = None;
+    let mut runs = Vec::new();
+    for (k, method) in methods.iter().enumerate() {
+        progress(k as f64 / methods.len() as f64);
+        let truth = reference.as_ref().map(|(_, truth)| truth);
+        let mut history = Vec::new();
+        // The observer's own time is not the method's.
+        let mut watching = 0.0;
+        let start = Instant::now();
+        let mut record = |iteration: Iteration<'_>| {
+            let paused = Instant::now();
+            if let Some(truth) = truth {
+                let error = relative_max(iteration.iterate, truth);
+                history.push(HistoryPoint { products: iteration.products, residual: iteration.residual, error });
+            }
+            watching += paused.elapsed().as_secs_f64();
+            ControlFlow::Continue(())
+        };
+        let solution = method.solve(system.equation(), &mut record)?;
+        let seconds = start.elapsed().as_secs_f64() - watching;
+        let report = &solution.report;
+        runs.push(SolverRun {
+            solver: method.name().to_string(),
+            kind: if method.is_direct() { "direct" } else { "iterative" }.to_string(),
+            stop: report.stop.to_string(),
+            n_applies: report.n_applies,
+            n_adjoint_applies: report.n_adjoint_applies,
+            products: report.products,
+            seconds,
+            true_residual: report.true_residual,
+            error: truth.map_or(0.0, |truth| relative_max(&solution.radiance, truth)),
+            error_bound: report.bracket.as_ref().map(|bracket| bracket.relative_width(&solution.radiance)),
+            history,
+        });
+        if reference.is_none() {
+            reference = Some((method.name().to_string(), solution.radiance));
+        }
+    }
+    let (name, truth) = reference.ok_or(StudyError::NoSolver)?;
+    Ok((name, truth, runs))
+}
+
+/// The Neumann series cut after 0, 1, 2, … bounces: its error, and the bound ‖Kᵏ⁺¹E‖∞ / (1 − ‖K‖∞) that needs no answer.
+fn truncate(system: &System, truth: &Block, limit: usize) -> Vec<Truncation> {
+    let transport = system.transport();
+    let (n, n_bands) = (system.n_bundles(), system.n_bands());
+    let ones = Block::from_fn(n, n_bands, |_, _| 1.0);
+    let mut next = Block::zeros(n, n_bands);
+    transport.apply(&ones, &mut next);
+    let gain: Vec<f64> = next.columns().map(max_abs).collect();
+
+    let mut sum = system.emission().clone();
+    let mut term = system.emission().clone();
+    let mut series = Vec::new();
+    for bounces in 0..limit {
+        transport.apply(&term, &mut next);
+        std::mem::swap(&mut term, &mut next);
+        let bound_of = |band: usize| max_abs(term.column(band)) / (1.0 - gain[band]).max(0.0);
+        let bound = (0..n_bands).map(bound_of).fold(0.0, f64::max) / truth.max_abs();
+        let error = relative_max(&sum, truth);
+        series.push(Truncation { bounces, error, bound });
+        if error < 1e-14 {
+            break;
+        }
+        sum.add_scaled(1.0, &term);
+    }
+    series
+}
+
+/// Estimates with 1, 4, 16, … samples a bundle, each run holding the ones before.
+fn estimate_growing(
+    estimator: &dyn Estimator,
+    most: u64,
+    settings: &StudySettings,
+    truth: &Block,
+    system: &System,
+    progress: &(dyn Fn(f64) + Sync),
+) -> (EstimatorRun, Estimate) {
+    let start = Instant::now();
+    let weights = system.etendue();
+    let mut total: Option<Estimate> = None;
+    let mut points = Vec::new();
+    let mut samples = 1;
+    while samples <= most {
+        let from = total.as_ref().map_or(0, |_| samples / 4);
+        let share = |done: f64| progress((from as f64 + done * (samples - from) as f64) / most as f64);
+        let part = estimate_range_watched(estimator, from..samples, settings.seed, &share);
+        let merged = match total {
+            None => part,
+            Some(sofar) => sofar.merge(&part),
+        };
+        if samples > 1 {
+            let error = relative_rms(&merged.mean, truth, weights);
+            points.push(SamplePoint { samples_per_bundle: samples, error, standard_error: predicted(&merged, truth, weights) });
+        }
+        total = Some(merged);
+        samples *= 4;
+    }
+    let estimate = total.expect("at least one sample was asked for");
+    let verdict = compare_blocks(truth, &estimate.mean, &estimate.variance_of_mean, settings.significance);
+    let (n, errors): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (p.samples_per_bundle as f64, p.error)).unzip();
+    let run = EstimatorRun {
+        estimator: estimator.name().to_string(),
+        truth: match estimator.truth() {
+            Truth::Discrete => "discrete",
+            Truth::Continuous => "continuous",
+        }
+        .to_string(),
+        worst_z: verdict.worst_z,
+        n_comparisons: verdict.n_comparisons,
+        p_value: verdict.p_value,
+        slope: fit_power_law(&n, &errors).map_or(f64::NAN, |line| line.slope),
+        points,
+        seconds: start.elapsed().as_secs_f64(),
+    };
+    (run, estimate)
+}
+
+/// The error that the estimate's own error bars predict, on the scale of [`relative_rms`].
+fn predicted(estimate: &Estimate, truth: &Block, weights: &[f64]) -> f64 {
+    let weigh = |block: &Block, power: i32| -> f64 {
+        block.columns().map(|c| c.iter().zip(weights).map(|(v, w)| w * v.powi(power)).sum::<f64>()).sum()
+    };
+    (weigh(&estimate.variance_of_mean, 1) / weigh(truth, 2)).sqrt()
+}
+
+/// The solved picture, and the same after 0, 1, 2, … bounces: E + W L.
+fn picture(
+    measurement: &Measurement,
+    system: &System,
+    truth: &Block,
+    n_bounces: usize,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Pictures {
+    // W adds a bounce, so the picture after k bounces shows the field after k − 1; that after none is the emission seen.
+    let mut fields = vec![system.emission().clone()];
+    let mut term = system.emission().clone();
+    let mut next = Block::zeros(term.n_rows(), term.n_columns());
+    for _ in 1..n_bounces {
+        system.transport().apply(&term, &mut next);
+        std::mem::swap(&mut term, &mut next);
+        let mut sum = fields[fields.len() - 1].clone();
+        sum.add_scaled(1.0, &term);
+        fields.push(sum);
+    }
+    let mut all: Vec<&Block> = fields.iter().collect();
+    all.push(truth);
+    let mut images = oracle::pictures(measurement, &all, progress);
+    let solved = images.pop().expect("one picture a field");
+    Pictures { solved, bounces: images }
+}
+
+/// What the report says of T, the change that its repair made in L included.
+fn summarise(system: &System, settings: &StudySettings, truth: &Block) -> Result<ExchangeSummary, StudyError> {
+    let report = system.report();
+    let unrepaired = system.without_repair();
+    let unrepaired = solver::Cg { tolerance: settings.tolerance }.solve(unrepaired.equation(), &mut ())?;
+    let all: f64 = system.etendue().iter().sum();
+    Ok(ExchangeSummary {
+        n_pairs: report.n_pairs,
+        n_unoccluded: report.n_clear,
+        n_sampled: report.n_sampled,
+        n_hidden: report.n_hidden,
+        quadrature_error: report.quadrature_error,
+        visibility_error: report.visibility_error,
+        closure_before_repair: report.closure_before_repair,
+        repair_sweeps: report.repair.map_or(0, |repair| repair.sweeps),
+        repair_change: relative_max(&unrepaired.radiance, truth),
+        escaped: system.sinks().column(0).iter().sum::<f64>() / all,
+    })
+}
