@@ -19,6 +19,14 @@ struct Manifest {
     files: Vec<String>,
 }
 
+/// Whether [`write_whole`] would agree to replace what is there: asked before hours of work, and again by the writing itself.
+///
+/// # Errors
+/// What is there is not a report.
+pub fn check_folder(directory: &Path) -> Result<(), ReportError> {
+    may_replace(&fs::canonicalize(directory).unwrap_or_else(|_| directory.to_path_buf())).map(|_| ())
+}
+
 /// Makes `directory` hold exactly these files.
 ///
 /// They are written and synced in a hidden folder beside it, which then takes its place by renaming. What is there

@@ -2,6 +2,7 @@
 
 use crate::assembly::AssemblyError;
 use crate::basis::BasisError;
+use crate::estimator::{EstimatorError, MergeError};
 use crate::solver::SolveError;
 use thiserror::Error;
 
@@ -14,6 +15,12 @@ pub enum StudyError {
     Assembly(#[from] AssemblyError),
     #[error(transparent)]
     Solve(#[from] SolveError),
+    #[error(transparent)]
+    Estimator(#[from] EstimatorError),
+    #[error(transparent)]
+    Merge(#[from] MergeError),
+    #[error("a study needs at least one estimator and one sample")]
+    NoEstimator,
     #[error("a study needs at least one solver")]
     NoSolver,
 }

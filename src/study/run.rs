@@ -7,7 +7,7 @@ use super::{Provenance, StudyError};
 use crate::assembly::{Exchange, Gather, Measurement, System, assemble_watched};
 use crate::basis::{Bundles, Resolution};
 use crate::compare::{compare_blocks, relative_max, relative_rms};
-use crate::estimator::{Estimate, Estimator, MatrixWalk, PathTracer, Truth, estimate_range_watched};
+use crate::estimator::{Estimate, Estimator, MatrixWalk, PathTracer, Scoring, Truth, estimate_watched};
 use crate::linalg::{Block, LinearOperator, max_abs};
 use crate::oracle;
 use crate::scene::Scene;
@@ -63,18 +63,24 @@ pub fn run(
     let truncation = stages.time("truncate", |_| truncate(&system, &truth, 60));
 
     // Estimate it by every estimator, walks against the matrix and paths against the scene.
-    let walks: [(&str, MatrixWalk); 2] =
-        stages.time("tables", |_| [("collision", MatrixWalk::collision(&system)), ("absorption", MatrixWalk::absorption(&system))]);
+    let collision = stages.time("build tables", |_| MatrixWalk::collision(&system))?;
+    let absorption = collision.with_scoring(Scoring::Absorption);
+    let tracer = PathTracer::new(scene, &bundles)?;
     let mut estimators = Vec::new();
-    for (stage, walk) in &walks {
-        let run = |progress: &(dyn Fn(f64) + Sync)| estimate_growing(walk, settings.walk_samples, settings, &truth, &system, progress);
-        estimators.push(stages.time(&format!("{stage} walks"), run).0);
+    let mut last = None;
+    let everyone: [(&str, &dyn Estimator, u64); 3] = [
+        ("collision walks", &collision, settings.walk_samples),
+        ("absorption walks", &absorption, settings.walk_samples),
+        ("path tracer", &tracer, settings.path_samples),
+    ];
+    for (stage, estimator, samples) in everyone {
+        let (run, estimate) = stages.time(stage, |progress| {
+            estimate_growing(estimator, samples, settings, &truth, &system, progress)
+        })?;
+        estimators.push(run);
+        last = Some(estimate);
     }
-    let tracer = PathTracer::new(scene, &bundles);
-    let (paths, path_estimate) = stages.time("trace paths", |progress| {
-        estimate_growing(&tracer, settings.path_samples, settings, &truth, &system, progress)
-    });
-    estimators.push(paths);
+    let path_estimate = last.ok_or(StudyError::NoEstimator)?;
 
     // Refine: the same scene on coarser meshes.
     let refinement = stages.time("refine", |progress| -> Result<Refinement, StudyError> {
@@ -232,7 +238,7 @@ fn estimate_growing(
     truth: &Block,
     system: &System,
     progress: &(dyn Fn(f64) + Sync),
-) -> (EstimatorRun, Estimate) {
+) -> Result<(EstimatorRun, Estimate), StudyError> {
     let start = Instant::now();
     let weights = system.etendue();
     let mut total: Option<Estimate> = None;
@@ -241,10 +247,10 @@ fn estimate_growing(
     while samples <= most {
         let from = total.as_ref().map_or(0, |_| samples / 4);
         let share = |done: f64| progress((from as f64 + done * (samples - from) as f64) / most as f64);
-        let part = estimate_range_watched(estimator, from..samples, settings.seed, &share);
+        let part = estimate_watched(estimator, from..samples, settings.seed, &share);
         let merged = match total {
             None => part,
-            Some(sofar) => sofar.merge(&part),
+            Some(sofar) => sofar.merge(&part)?,
         };
         if samples > 1 {
             let error = relative_rms(&merged.mean, truth, weights);
@@ -253,7 +259,7 @@ fn estimate_growing(
         total = Some(merged);
         samples *= 4;
     }
-    let estimate = total.expect("at least one sample was asked for");
+    let estimate = total.ok_or(StudyError::NoEstimator)?;
     let verdict = compare_blocks(truth, &estimate.mean, &estimate.variance_of_mean, settings.significance);
     let (n, errors): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (p.samples_per_bundle as f64, p.error)).unzip();
     let run = EstimatorRun {
@@ -270,7 +276,7 @@ fn estimate_growing(
         points,
         seconds: start.elapsed().as_secs_f64(),
     };
-    (run, estimate)
+    Ok((run, estimate))
 }
 
 /// The error that the estimate's own error bars predict, on the scale of [`relative_rms`].

@@ -38,7 +38,8 @@ impl Axis {
     /// From 0 to the largest value, marked at multiples of 1, 2 or 5.
     pub fn linear_from_zero(values: impl IntoIterator<Item = f64>) -> Self {
         let high = values.into_iter().filter(|v| v.is_finite()).fold(0.0, f64::max);
-        let high = if high > 0.0 { high } else { 1.0 };
+        // Keep clear of the ends of f64, where a step or a margin would under- or overflow.
+        let high = if high > 1e-300 { high.min(1e300) } else { 1.0 };
         let step = nice_step(high / 6.0);
         let labels = (0..=(high / step + 1e-9).floor() as u32).map(|k| f64::from(k) * step);
         let labels = labels.map(|v| (v, if step >= 1.0 { count(v as u64) } else { significant(v, 2) })).collect();
@@ -140,9 +141,13 @@ mod tests {
 
     #[test]
     fn axes_without_data_still_have_two_ends() {
-        for axis in
-            [Axis::log_decades([]), Axis::log_tight([f64::NAN]), Axis::linear_from_zero([]), Axis::log_tight([0.25])]
-        {
+        for axis in [
+            Axis::log_decades([]),
+            Axis::log_tight([f64::NAN]),
+            Axis::linear_from_zero([]),
+            Axis::log_tight([0.25]),
+            Axis::linear_from_zero([5e-324]),
+        ] {
             let (low, high) = axis.ends();
             assert!(low < high && !axis.labels.is_empty(), "{axis:?}");
         }

@@ -8,7 +8,7 @@ use super::sheet::{Anchor, GREY, INK, Sheet, Stroke};
 use crate::report::number::significant;
 use crate::study::{EstimatorRun, SamplePoint};
 
-const WIDTH: u32 = 760;
+const WIDTH: u32 = 860;
 const HEIGHT: u32 = 450;
 
 /// An error this many times its predicted statistical part has levelled off.
@@ -36,6 +36,13 @@ pub fn monte_carlo(estimators: &[EstimatorRun]) -> Sheet {
         return sheet;
     }
 
+    // A run is a predicted and a measured line.
+    let predicted = |run: &EstimatorRun| {
+        run.points.iter().map(|p| (p.samples_per_bundle as f64, p.standard_error)).collect::<Vec<_>>()
+    };
+    let measured =
+        |run: &EstimatorRun| run.points.iter().map(|p| (p.samples_per_bundle as f64, p.error)).collect::<Vec<_>>();
+
     // Show what N^(−1/2) looks like, below everything measured.
     if let Some(line) = reference {
         panel.line(&mut sheet, line, Stroke::solid(GREY, 1.0));
@@ -46,21 +53,17 @@ pub fn monte_carlo(estimators: &[EstimatorRun]) -> Sheet {
 
     // Show where a continuous estimator levels off: what the patches cannot resolve.
     for (i, run) in estimators.iter().enumerate() {
-        let Some(level) = run.points.last().and_then(discretisation) else { continue };
+        let Some(level) = discretisation(run) else { continue };
         let (low, high) = panel.x.ends();
         panel.line(&mut sheet, [(low, level), (high, level)], Stroke::dashed(look(i).colour, 1.0, (1.5, 3.0)));
         if let Some((x, y)) = panel.place(low, level) {
             let text = format!("discretisation error, {}", significant(level, 2));
             sheet.words((x + 8.0, y - 10.0), text, SMALL, look(i).colour, Anchor::Start);
         }
+        panel.line(&mut sheet, measured(run), Stroke::solid(look(i).colour, 0.75));
     }
 
     // Draw the promise as a line and the measurement as markers.
-    let predicted = |run: &EstimatorRun| {
-        run.points.iter().map(|p| (p.samples_per_bundle as f64, p.standard_error)).collect::<Vec<_>>()
-    };
-    let measured =
-        |run: &EstimatorRun| run.points.iter().map(|p| (p.samples_per_bundle as f64, p.error)).collect::<Vec<_>>();
     for (i, run) in estimators.iter().enumerate() {
         panel.line(&mut sheet, predicted(run), look(i).stroke());
     }
@@ -99,11 +102,12 @@ fn draw_key(sheet: &mut Sheet, right: f64, y: f64) {
     sheet.dot((x - 10.0, y), 3.75, INK);
 }
 
-/// The part of a measured error that its standard error does not explain, where that is most of it.
-fn discretisation(point: &SamplePoint) -> Option<f64> {
-    let levelled =
-        point.error.is_finite() && point.standard_error >= 0.0 && point.error > LEVELLED * point.standard_error;
-    levelled.then(|| (point.error.powi(2) - point.standard_error.powi(2)).sqrt())
+/// The part of the last measured error that its standard error does not explain, where that is most of it and the run
+/// estimates another truth than the discrete one.
+fn discretisation(run: &EstimatorRun) -> Option<f64> {
+    let SamplePoint { error, standard_error, .. } = *run.points.last()?;
+    let levelled = error.is_finite() && standard_error >= 0.0 && error > LEVELLED * standard_error;
+    (levelled && run.truth == "continuous").then(|| (error.powi(2) - standard_error.powi(2)).sqrt())
 }
 
 /// Two points of a line of slope −1/2 through all sample counts, at 0.6 times the lowest that anything comes to it.

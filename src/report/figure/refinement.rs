@@ -7,7 +7,7 @@ use super::sheet::{Anchor, GREY, INK, Sheet, Stroke};
 use crate::report::number::{count, significant, trimmed, with_error};
 use crate::study::Refinement;
 
-const WIDTH: u32 = 720;
+const WIDTH: u32 = 860;
 const HEIGHT: u32 = 440;
 
 /// Difference of the surface means from the path tracer's, against patch size, with the fitted order and the noise.
@@ -110,8 +110,8 @@ fn draw_slope(sheet: &mut Sheet, panel: &Panel, fit: &Fit, study: &Refinement) {
     }
     let text = format!("observed order {}", with_error(study.observed_order, study.order_standard_error));
     sheet.bold_words((panel.left + 14.0, panel.top + 16.0), text, NORMAL, look(1).colour, Anchor::Start);
-    if let Some(e) = Some(study.finest_error).filter(|e| e.is_finite()) {
-        let text = format!("estimated error of the finest level {}", significant(e, 2));
+    if study.finest_error.is_finite() {
+        let text = format!("estimated error of the finest level {}", significant(study.finest_error, 2));
         sheet.words((panel.left + 14.0, panel.top + 33.0), text, SMALL, INK, Anchor::Start);
     }
 }

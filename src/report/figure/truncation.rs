@@ -3,11 +3,11 @@
 use super::axis::Axis;
 use super::palette::{Look, look};
 use super::panel::{NORMAL, Panel, SMALL, spread};
-use super::sheet::{Anchor, GREY, INK, Sheet, Stroke};
+use super::sheet::{Anchor, GREY, Point, Sheet, Stroke};
 use crate::report::number::significant;
 use crate::study::Truncation;
 
-const WIDTH: u32 = 720;
+const WIDTH: u32 = 860;
 const HEIGHT: u32 = 420;
 
 /// Truncation error of the Neumann series beside its bound, against bounces.
@@ -43,27 +43,28 @@ pub fn truncation(series: &[Truncation]) -> Sheet {
     }
 
     // Name them where they end.
-    let names = [(&errors, error_look, "error", fall(&errors)), (&bounds, bound_look, "bound", fall(&bounds))];
-    let ends: Vec<f64> = names.iter().map(|(points, ..)| end(&panel, points).1).collect();
-    let heights = spread(&ends, 34.0, panel.top, panel.bottom - 26.0);
-    for ((points, look, name, fall), height) in names.into_iter().zip(heights) {
-        name_line(&mut sheet, end(&panel, points), (panel.right + 10.0, height), look, name, fall);
+    let lines = [(&errors, error_look, "error"), (&bounds, bound_look, "bound")];
+    let ends: Vec<_> = lines.into_iter().filter_map(|line| Some((line, end(&panel, line.0)?))).collect();
+    let wanted: Vec<f64> = ends.iter().map(|(_, end)| end.1).collect();
+    let heights = spread(&wanted, 34.0, panel.top, panel.bottom - 26.0);
+    for (((points, look, name), end), height) in ends.into_iter().zip(heights) {
+        name_line(&mut sheet, end, (panel.right + 10.0, height), look, name, fall(points));
     }
     sheet
 }
 
-fn name_line(sheet: &mut Sheet, end: (f64, f64), at: (f64, f64), look: Look, name: &str, fall: Option<f64>) {
+fn name_line(sheet: &mut Sheet, end: Point, at: Point, look: Look, name: &str, fall: Option<f64>) {
     sheet.line(vec![(end.0 + 6.0, end.1), at], Stroke::solid(look.colour, 0.75));
     sheet.bold_words((at.0 + 4.0, at.1), name, NORMAL, look.colour, Anchor::Start);
     if let Some(factor) = fall {
         let text = format!("× {} a bounce", significant(factor, 2));
-        sheet.words((at.0 + 4.0, at.1 + 15.0), text, SMALL, if factor < 1.0 { GREY } else { INK }, Anchor::Start);
+        sheet.words((at.0 + 4.0, at.1 + 15.0), text, SMALL, GREY, Anchor::Start);
     }
 }
 
 /// The last drawn point of a line.
-fn end(panel: &Panel, points: &[(f64, f64)]) -> (f64, f64) {
-    points.iter().rev().find_map(|(x, y)| panel.place(*x, *y)).unwrap_or((panel.right, panel.bottom))
+fn end(panel: &Panel, points: &[(f64, f64)]) -> Option<Point> {
+    points.iter().rev().find_map(|(x, y)| panel.place(*x, *y))
 }
 
 /// The factor by which a line falls with every bounce, over the second half of what rounding has not touched.

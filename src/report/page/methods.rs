@@ -42,9 +42,9 @@ pub fn solvers(outcome: &StudyOutcome, on_page: &FigureOnPage) -> String {
     let shown = figure(
         on_page,
         "Error and residual of every iterative solver against products with K, logarithmic",
-        "Error ‖L − L_ref‖∞ / ‖L_ref‖∞ and residual ‖E + K L − L‖∞ / ‖E‖∞ against work, in products with K.",
+        "Error ‖L − L*‖∞ / ‖L*‖∞ against the direct solution L*, and residual ‖E + K L − L‖∞ / ‖E‖∞ against work, in products with K.",
     );
-    let caption = "Every solver. Work is entries of K touched, over entries of K; for direct solvers, operations over those of a product.";
+    let caption = "Every solver; work in products with K: entries touched over entries of K. Residual, error and bound are relative.";
     section("solvers", "Solvers", &lead, &(shown + &table.html(caption)))
 }
 

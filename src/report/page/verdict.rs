@@ -35,34 +35,31 @@ fn solvers(outcome: &StudyOutcome) -> Option<String> {
         n => format!("{n} of {n_all} solvers finished and"),
     };
     let verb = if n_all == 1 { "is accurate" } else { "agree" };
-    Some(format!("on {} ray bundles {who} {verb} to {}", count(outcome.n_bundles as u64), significant(worst, 2)))
+    Some(format!("on {} ray bundles, {who} {verb} to {}", count(outcome.n_bundles as u64), significant(worst, 2)))
 }
 
 fn walks(outcome: &StudyOutcome) -> Option<String> {
     let discrete = || outcome.estimators.iter().filter(|run| run.truth == "discrete");
     let least = discrete().map(|run| run.p_value).filter(|p| !p.is_nan()).reduce(f64::min)?;
     let verb = if discrete().all(agrees) { "agree" } else { "disagree" };
-    Some(format!("the random walks on the matrix {verb} with it (least p = {})", significant(least, 2)))
+    Some(format!("random walks on the matrix {verb} with them (least p = {})", significant(least, 2)))
 }
 
 fn refinement(outcome: &StudyOutcome) -> Option<String> {
     let study = &outcome.refinement;
     let finest = study.levels.last()?;
+    let agreement = if study.agrees { "within" } else { "more than" };
     let order = if study.observed_order.is_finite() {
         format!(
-            ", shrinking with the patches at order {}",
+            ", and the difference shrinks with the patches at order {}",
             with_error(study.observed_order, study.order_standard_error)
         )
     } else {
         String::new()
     };
-    let agreement = if study.agrees {
-        "which its estimated discretisation and statistical errors explain"
-    } else {
-        "more than its estimated errors explain"
-    };
     Some(format!(
-        "the path tracer, which knows no patches, differs by {} at the finest{order}, {agreement}",
+        "the path tracer, which knows no patches, differs by {} at the finest, {agreement} the estimated discretisation and statistical \
+         errors{order}",
         percent(finest.error)
     ))
 }
