@@ -14,9 +14,11 @@ use crate::geometry::{Frame, Hit, Polygon, Ray, Tracer, Vec3};
 use crate::linalg::Block;
 use crate::sampling::{AliasTable, Kronecker, mix, warp};
 use crate::scattering::Brdf;
-use crate::scene::{Camera, Scene, Side};
+use crate::scene::{Camera, FilterTable, Scene, Side};
 use rayon::prelude::*;
 use std::f64::consts::PI;
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How finely pixels are gathered: counts are the caller's choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,6 +40,7 @@ pub struct Measurement<'a> {
     camera: &'a Camera,
     tracer: Tracer,
     gather: Gather,
+    filter: FilterTable,
     /// Facets that emit, with a table to choose one by area; `None` where rays meet them often enough.
     lamps: Option<Lamps>,
 }
@@ -72,7 +75,9 @@ impl<'a> Measurement<'a> {
             None
         };
         let tracer = Tracer::new(&polygons);
-        Some(Self { scene, bundles, camera: scene.camera()?, tracer, gather, lamps })
+        let camera = scene.camera()?;
+        let filter = FilterTable::new(&camera.film.filter);
+        Some(Self { scene, bundles, camera, tracer, gather, filter, lamps })
     }
 
     /// m.
@@ -105,7 +110,7 @@ impl<'a> Measurement<'a> {
 
         // Gather scan line by scan line.
         let (width, height) = (self.camera.film.width, self.camera.film.height);
-        let done = std::sync::atomic::AtomicUsize::new(0);
+        let done = AtomicUsize::new(0);
         let lines: Vec<Vec<f64>> = (0..height)
             .into_par_iter()
             .with_max_len(1)
@@ -125,7 +130,7 @@ impl<'a> Measurement<'a> {
                         },
                     );
                 }
-                progress((done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1) as f64 / height as f64);
+                progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / height as f64);
                 line
             })
             .collect();
@@ -137,16 +142,15 @@ impl<'a> Measurement<'a> {
     /// Measures one pixel: `seen(band, emission)` and `gathered(bundle, band, weight)`, an entry of W, each any number of times.
     pub fn pixel(&self, x: usize, y: usize, mut seen: impl FnMut(usize, f64), mut gathered: impl FnMut(usize, usize, f64)) {
         let film = &self.camera.film;
-        let radius = film.filter.radius();
         let key = mix(&[self.gather.seed, (y * film.width + x) as u64]);
         let positions = Kronecker::<2>::new(key);
-        let offsets: Vec<[f64; 2]> =
-            (0..self.gather.samples).map(|s| positions.point(s).map(|u| radius * (2.0 * u - 1.0))).collect();
-        let filter = |[dx, dy]: [f64; 2]| film.filter.eval(dx) * film.filter.eval(dy);
-        let total: f64 = offsets.iter().map(|offset| filter(*offset)).sum();
-        for (s, offset) in offsets.iter().enumerate() {
-            let weight = filter(*offset) / total;
-            let ray = self.camera.ray(x as f64 + 0.5 + offset[0], y as f64 + 0.5 + offset[1]);
+        // Draw positions by the filter's magnitude: each then weighs by its sign alone.
+        let drawn: Vec<[(f64, f64); 2]> =
+            (0..self.gather.samples).map(|s| positions.point(s).map(|u| self.filter.draw(u))).collect();
+        let total: f64 = drawn.iter().map(|[(_, sx), (_, sy)]| sx * sy).sum();
+        for (s, [(dx, sx), (dy, sy)]) in drawn.into_iter().enumerate() {
+            let weight = sx * sy / total;
+            let ray = self.camera.ray(x as f64 + 0.5 + dx, y as f64 + 0.5 + dy);
             let Some(hit) = self.tracer.closest(&ray, None) else { continue };
             let side = if hit.front { Side::Front } else { Side::Back };
             let surface = self.scene.surface_of(hit.polygon);
@@ -158,18 +162,26 @@ impl<'a> Measurement<'a> {
             let frame = Frame::about(if hit.front { normal } else { -normal });
             let outgoing = frame.to_local(-ray.direction.normalize());
             let place = Place { hit, position: ray.at(hit.t), frame, brdf, outgoing };
-            let key = mix(&[key, s as u64]);
-            self.gather_hemisphere(&place, key, weight, &mut gathered);
+            // All samples of the pixel share one sequence: together they spread as evenly as their whole number can.
+            let sequence = s * self.gather.rays..(s + 1) * self.gather.rays;
+            self.gather_hemisphere(&place, key, sequence.clone(), weight, &mut gathered);
             if let Some(lamps) = &self.lamps {
-                self.gather_lamps(&place, lamps, key, weight, &mut gathered);
+                self.gather_lamps(&place, lamps, key, sequence, weight, &mut gathered);
             }
         }
     }
 
     /// Rays uniform in étendue: the weight of each is π f_r.
-    fn gather_hemisphere(&self, place: &Place, key: u64, weight: f64, gathered: &mut impl FnMut(usize, usize, f64)) {
+    fn gather_hemisphere(
+        &self,
+        place: &Place,
+        key: u64,
+        sequence: Range<usize>,
+        weight: f64,
+        gathered: &mut impl FnMut(usize, usize, f64),
+    ) {
         let directions = Kronecker::<2>::new(mix(&[key, 0]));
-        for k in 0..self.gather.rays {
+        for k in sequence {
             let local = Vec3::from(warp::cosine_hemisphere(directions.point(k)));
             let ray = Ray { origin: place.position, direction: place.frame.to_world(local) };
             let Some(hit) = self.tracer.closest(&ray, Some(place.hit.polygon)) else { continue };
@@ -192,11 +204,12 @@ impl<'a> Measurement<'a> {
         place: &Place,
         lamps: &Lamps,
         key: u64,
+        sequence: Range<usize>,
         weight: f64,
         gathered: &mut impl FnMut(usize, usize, f64),
     ) {
         let points = Kronecker::<3>::new(mix(&[key, 1]));
-        for k in 0..self.gather.rays {
+        for k in sequence {
             let [choice, u, v] = points.point(k);
             let facet = lamps.facets[lamps.by_area.sample(choice)];
             let polygon = self.scene.polygon(facet);

@@ -5,7 +5,7 @@ use super::exit::{Exit, Failure};
 use super::memory::{self, Bytes};
 use crate::basis::{Bundles, Resolution};
 use crate::scene::Scene;
-use crate::{gallery, scene};
+use crate::gallery;
 use std::path::Path;
 
 /// A preset for files, which have none: about this many patches.
@@ -51,7 +51,7 @@ fn find(arguments: &SceneArguments) -> Result<(Scene, f64), Failure> {
             ),
         ));
     }
-    let scene = scene::format::read(path, &arguments.definitions)
+    let scene = crate::scene::format::read(path, &arguments.definitions)
         .map_err(|error| Failure::new(Exit::Input, error.to_string()))?;
     let area: f64 = scene.surfaces().iter().map(|surface| surface.area()).sum();
     Ok((scene, (area / PRESET_PATCHES).sqrt()))

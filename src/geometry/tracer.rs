@@ -117,14 +117,14 @@ impl Tracer {
         let plane = start.map_or(u32::MAX, |id| self.planes[id]);
         let mut best: Option<Hit> = None;
         let (box_ray, entry) = self.box_ray(ray, f64::INFINITY)?;
-        let beyond = exact_target(ray);
+        let probe = self.probe(ray);
         self.tree.ray_traverse(box_ray, &mut RayHit::none(), |_, k| {
             let shape = &self.shapes[k];
             let nearest = best.map_or(f64::INFINITY, |hit| hit.t);
             if shape.plane == plane {
                 return f32::INFINITY;
             }
-            let Some(hit) = shape.meet(ray, beyond, nearest) else { return f32::INFINITY };
+            let Some(hit) = shape.meet(&probe, nearest) else { return f32::INFINITY };
             // Of two polygons met at one point take the lower number, whatever the order of the boxes.
             if hit.t < nearest || best.is_none_or(|b| hit.polygon < b.polygon) {
                 best = Some(hit);
@@ -142,10 +142,10 @@ impl Tracer {
         let ray = Ray { origin: from, direction: to - from };
         let planes = ends.map(|id| self.planes[id]);
         let Some((box_ray, _)) = self.box_ray(&ray, 1.0) else { return false };
-        let beyond = exact_target(&ray);
+        let probe = self.probe(&ray);
         !self.tree.ray_traverse_miss(box_ray, |_, k| {
             let shape = &self.shapes[k];
-            let blocks = !planes.contains(&shape.plane) && shape.meet(&ray, beyond, 1.0).is_some_and(|hit| hit.t < 1.0);
+            let blocks = !planes.contains(&shape.plane) && shape.meet(&probe, 1.0).is_some_and(|hit| hit.t < 1.0);
             if blocks { 0.0 } else { f32::INFINITY }
         })
     }
@@ -180,8 +180,8 @@ impl Tracer {
     /// True if one of these polygons (see [`Shaft::Undecided`](super::Shaft::Undecided)) crosses the open segment.
     pub fn blocked_by(&self, handles: &[u32], from: Vec3, to: Vec3) -> bool {
         let ray = Ray { origin: from, direction: to - from };
-        let beyond = exact_target(&ray);
-        handles.iter().any(|&k| self.shapes[k as usize].meet(&ray, beyond, 1.0).is_some_and(|hit| hit.t < 1.0))
+        let probe = self.probe(&ray);
+        handles.iter().any(|&k| self.shapes[k as usize].meet(&probe, 1.0).is_some_and(|hit| hit.t < 1.0))
     }
 
     /// True if the two polygons lie in one plane, facing alike or opposite.
@@ -208,14 +208,33 @@ fn round_up(t: f64) -> f32 {
     (t * (1.0 + 1e-6)) as f32
 }
 
-/// The second point of the ray's line. It stands for the direction wherever a sign must be exact.
-fn exact_target(ray: &Ray) -> Vec3 {
-    ray.origin + ray.direction
+/// A ray with what its sign tests need.
+#[derive(Clone, Copy)]
+struct Probe {
+    ray: Ray,
+    /// The second point of the ray's line: it stands for the direction wherever a sign must be exact.
+    beyond: Vec3,
+    /// What rounding can have done to d · (a × b), a and b the corners of any polygon of the scene as seen from the origin.
+    doubt: f64,
+}
+
+impl Tracer {
+    fn probe(&self, ray: &Ray) -> Probe {
+        let beyond = ray.origin + ray.direction;
+        let largest = |v: Vec3| v.abs().max_element();
+        // Corners are at most `reach` away, and off by an ulp of their coordinates; `beyond` is off by an ulp of its own.
+        let reach = self.radius + largest(ray.origin - self.centre);
+        let coordinates = reach + largest(self.centre) + largest(ray.origin);
+        let direction = largest(ray.direction);
+        let doubt = 32.0 * f64::EPSILON * reach * (reach * (direction + largest(beyond)) + 2.0 * coordinates * direction);
+        Probe { ray: *ray, beyond, doubt }
+    }
 }
 
 impl Shape {
-    /// Where the ray from its origin through `beyond` meets this polygon, at 0 < t ≤ `nearest`.
-    fn meet(&self, ray: &Ray, beyond: Vec3, nearest: f64) -> Option<Hit> {
+    /// Where the ray meets this polygon, at 0 < t ≤ `nearest`.
+    fn meet(&self, probe: &Probe, nearest: f64) -> Option<Hit> {
+        let ray = &probe.ray;
         let approach = self.normal.dot(ray.direction);
         let t = self.normal.dot(self.vertices[0] - ray.origin) / approach;
         if !(t > 0.0 && t <= nearest) {
@@ -224,38 +243,31 @@ impl Shape {
 
         // Inside: the ray passes every edge on the same side.
         let (mut left, mut right) = (false, false);
-        let mut a = self.vertices[self.vertices.len() - 1] - ray.origin;
-        for (k, vertex) in self.vertices.iter().enumerate() {
-            let b = *vertex - ray.origin;
-            let previous = if k == 0 { self.vertices.len() - 1 } else { k - 1 };
-            let side = side_of_edge(ray, beyond, a, b, self.vertices[previous], *vertex);
+        let mut from = self.vertices[self.vertices.len() - 1];
+        let mut a = from - ray.origin;
+        for to in &self.vertices {
+            let b = *to - ray.origin;
+            let mut side = ray.direction.dot(a.cross(b));
+            if side.abs() <= probe.doubt {
+                side = exact_side(probe, from, *to);
+            }
             left |= side > 0.0;
             right |= side < 0.0;
             if left && right {
                 return None;
             }
-            a = b;
+            (from, a) = (*to, b);
         }
         Some(Hit { polygon: self.id as usize, t, front: approach < 0.0 })
     }
 }
 
-/// The sign of d · (a × b): on which side the ray passes the edge from `from` to `to`; antisymmetric in the two, exactly.
-fn side_of_edge(ray: &Ray, beyond: Vec3, a: Vec3, b: Vec3, from: Vec3, to: Vec3) -> f64 {
-    let d = ray.direction;
-    let normal = a.cross(b);
-    let side = d.dot(normal);
-
-    // Bound what rounding can have done, in the products and in `beyond`; decide closer calls exactly.
-    let size = a.abs().max_element() * b.abs().max_element();
-    let slack = d.abs().max_element() + 2.0 * beyond.abs().max_element();
-    let wobble = (from.abs().max_element() + to.abs().max_element()) * (a.abs().max_element() + b.abs().max_element());
-    if side.abs() > 32.0 * f64::EPSILON * (size * slack + wobble * d.abs().max_element()) {
-        return side;
-    }
+/// The exact sign of d · (a × b): on which side the ray passes the edge; antisymmetric in the edge's ends.
+#[cold]
+fn exact_side(probe: &Probe, from: Vec3, to: Vec3) -> f64 {
     let coord = |v: Vec3| Coord3D { x: v.x, y: v.y, z: v.z };
     // orient3d(p, q, r, s) is the sign of (p − s) · ((q − s) × (r − s)).
-    orient3d(coord(beyond), coord(from), coord(to), coord(ray.origin))
+    orient3d(coord(probe.beyond), coord(from), coord(to), coord(probe.ray.origin))
 }
 
 /// True if no vertex of the scene lies strictly on one of the polygon's sides.

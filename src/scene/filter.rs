@@ -39,6 +39,41 @@ impl PixelFilter {
     }
 }
 
+/// Draws offsets with density proportional to |filter|, by a table of its integral.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilterTable {
+    filter: PixelFilter,
+    /// ∫ |filter| from −radius up to each of the equidistant ends of cells, normalised to 1.
+    cumulative: Vec<f64>,
+}
+
+impl FilterTable {
+    /// Cells of the table: a gaussian is then drawn to 1e-6 of its width.
+    const CELLS: usize = 1024;
+
+    pub fn new(filter: &PixelFilter) -> Self {
+        let centre = |k: usize| filter.radius() * (2.0 * (k as f64 + 0.5) / Self::CELLS as f64 - 1.0);
+        let mut sum = 0.0;
+        let mut cumulative: Vec<f64> = (0..Self::CELLS)
+            .map(|k| {
+                sum += filter.eval(centre(k)).abs();
+                sum
+            })
+            .collect();
+        cumulative.iter_mut().for_each(|c| *c /= sum);
+        Self { filter: *filter, cumulative }
+    }
+
+    /// From a number uniform in [0, 1): an offset in pixels, and the sign of the filter there.
+    pub fn draw(&self, uniform: f64) -> (f64, f64) {
+        let k = self.cumulative.partition_point(|c| *c <= uniform).min(Self::CELLS - 1);
+        let low = if k == 0 { 0.0 } else { self.cumulative[k - 1] };
+        let within = ((uniform - low) / (self.cumulative[k] - low)).clamp(0.0, 1.0);
+        let offset = self.filter.radius() * (2.0 * (k as f64 + within) / Self::CELLS as f64 - 1.0);
+        (offset, if self.filter.eval(offset) < 0.0 { -1.0 } else { 1.0 })
+    }
+}
+
 /// The two-parameter cubic on [0, 2].
 fn mitchell(x: f64, b: f64, c: f64) -> f64 {
     let cubic = |k3: f64, k2: f64, k1: f64, k0: f64| (((k3 * x + k2) * x + k1) * x + k0) / 6.0;

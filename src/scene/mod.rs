@@ -11,6 +11,7 @@ pub mod format;
 
 pub use camera::{Camera, Film, PixelFilter};
 pub use error::SceneError;
+pub use filter::FilterTable;
 pub use surface::{Side, Surface, Tessellation};
 
 /// Everything a scene is made of, not yet checked. [`Scene::new`] turns it into a [`Scene`].
