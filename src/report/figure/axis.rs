@@ -31,7 +31,8 @@ impl Axis {
     /// The values with a margin of some percent on either side, marked at decades, and at 2 and 5 where decades are few.
     pub fn log_tight(values: impl IntoIterator<Item = f64>) -> Self {
         let (low, high) = log_extent(values).unwrap_or((0.0, 1.0));
-        let margin = 0.06 * (high - low).max(0.5);
+        // 2 and 5 lie 0.4 decades apart: with 0.7 there is always something to label.
+        let margin = (0.06 * (high - low)).max(0.5 * (0.7 - (high - low)));
         Self::log_between(low - margin, high + margin)
     }
 
