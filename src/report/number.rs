@@ -38,9 +38,10 @@ pub fn trimmed(value: f64, digits: usize) -> String {
     }
 }
 
-/// Work in products with K: whole where it is whole.
+/// Work in products with K: whole where it is whole or large.
 pub fn products(value: f64) -> String {
-    if value.fract() == 0.0 && (0.0..1e9).contains(&value) { count(value as u64) } else { trimmed(value, 3) }
+    let whole = value.fract() == 0.0 || value >= 100.0;
+    if whole && (0.0..1e9).contains(&value) { count(value.round() as u64) } else { trimmed(value, 3) }
 }
 
 /// 10ᵏ, the label of a decade.
@@ -76,14 +77,14 @@ pub fn seconds(value: f64) -> String {
 /// A mean and its standard error in the shared notation 0.43128 ± 0.00014: two digits of error, the mean to the same place.
 pub fn with_error(mean: f64, standard_error: f64) -> String {
     if !(standard_error.is_finite() && standard_error > 0.0 && mean.is_finite()) {
-        return format!("{} ± {}", significant(mean, 5), significant(standard_error, 2));
+        return format!("{}\u{a0}±\u{a0}{}", significant(mean, 5), significant(standard_error, 2));
     }
     let (_, exponent) = split(standard_error, 2);
     if !(-9..5).contains(&exponent) {
-        return format!("{} ± {}", significant(mean, 5), significant(standard_error, 2));
+        return format!("{}\u{a0}±\u{a0}{}", significant(mean, 5), significant(standard_error, 2));
     }
     let decimals = (1 - exponent).max(0) as usize;
-    minus(format!("{mean:.decimals$} ± {standard_error:.decimals$}"))
+    minus(format!("{mean:.decimals$}\u{a0}±\u{a0}{standard_error:.decimals$}"))
 }
 
 /// Mantissa text and decimal exponent after rounding to `digits` significant digits.
@@ -133,13 +134,14 @@ mod tests {
         assert_eq!(trimmed(100.0, 3), "100");
         assert_eq!(products(12_345.0), "12\u{202f}345");
         assert_eq!(products(22.875), "22.9");
+        assert_eq!(products(1376.4), "1\u{202f}376");
         assert_eq!(scientific(1.0, 2), "1.0×10⁰");
         assert_eq!(power_of_ten(-12), "10⁻¹²");
         assert_eq!(count(1_234_567), "1\u{202f}234\u{202f}567");
         assert_eq!(count(999), "999");
         assert_eq!(seconds(0.003_14), "3.1 ms");
         assert_eq!(seconds(12.345), "12.3 s");
-        assert_eq!(with_error(0.431_284_3, 0.000_142), "0.43128 ± 0.00014");
-        assert_eq!(with_error(1.0, 0.0), "1.0000 ± 0");
+        assert_eq!(with_error(0.431_284_3, 0.000_142), "0.43128\u{a0}±\u{a0}0.00014");
+        assert_eq!(with_error(1.0, 0.0), "1.0000\u{a0}±\u{a0}0");
     }
 }

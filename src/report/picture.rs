@@ -12,7 +12,7 @@ pub struct Shown {
 }
 
 /// What the page shows: all with the exposure of the solved picture.
-pub struct Gallery {
+pub struct PicturesOnPage {
     pub solved: Shown,
     pub bounces: Vec<Shown>,
     pub exposure: f64,
@@ -21,7 +21,7 @@ pub struct Gallery {
 }
 
 /// The files of the pictures, and what the page shows of them.
-pub fn pictures(pictures: &Pictures) -> Result<(Gallery, Vec<Artifact>), ReportError> {
+pub fn pictures(pictures: &Pictures) -> Result<(PicturesOnPage, Vec<Artifact>), ReportError> {
     // Expose everything as the solved scene.
     let solved = displayable(&pictures.solved);
     let bounces: Vec<Image> = pictures.bounces.iter().map(displayable).collect();
@@ -30,7 +30,7 @@ pub fn pictures(pictures: &Pictures) -> Result<(Gallery, Vec<Artifact>), ReportE
     // Encode for the page.
     let show =
         |caption: String, image: &Image| Ok::<_, ReportError>(Shown { caption, png: encode_png(image, exposure)? });
-    let gallery = Gallery {
+    let on_page = PicturesOnPage {
         solved: show("solved: all bounces".into(), &solved)?,
         bounces: bounces.iter().enumerate().map(|(k, image)| show(caption(k), image)).collect::<Result<_, _>>()?,
         exposure,
@@ -40,7 +40,7 @@ pub fn pictures(pictures: &Pictures) -> Result<(Gallery, Vec<Artifact>), ReportE
     // Encode for programs, and the strip for people.
     let mut files = vec![
         Artifact { name: "solved.exr".into(), bytes: encode_exr(&pictures.solved)? },
-        Artifact { name: "solved.png".into(), bytes: gallery.solved.png.clone() },
+        Artifact { name: "solved.png".into(), bytes: on_page.solved.png.clone() },
     ];
     if !bounces.is_empty() {
         let captioned: Vec<(String, &Image)> =
@@ -50,12 +50,11 @@ pub fn pictures(pictures: &Pictures) -> Result<(Gallery, Vec<Artifact>), ReportE
     for (k, image) in pictures.bounces.iter().enumerate() {
         files.push(Artifact { name: format!("bounce-{k}.exr"), bytes: encode_exr(image)? });
     }
-    Ok((gallery, files))
+    Ok((on_page, files))
 }
 
 fn caption(bounces: usize) -> String {
     match bounces {
-        0 => "emission alone".into(),
         1 => "1 bounce".into(),
         k => format!("{k} bounces"),
     }

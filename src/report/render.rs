@@ -38,16 +38,16 @@ pub fn render(outcome: &StudyOutcome) -> Result<Vec<Artifact>, ReportError> {
     files.push(Artifact { name: "surfaces.csv".into(), bytes: data::surfaces(&outcome.refinement) });
 
     // Encode the pictures.
-    let mut gallery = None;
+    let mut shown = None;
     if let Some(taken) = &outcome.pictures {
-        let (shown, encoded) = pictures(taken)?;
-        gallery = Some(shown);
+        let (on_page, encoded) = pictures(taken)?;
+        shown = Some(on_page);
         files.extend(encoded);
     }
 
     // Compose the page, and list everything in report.json.
     let figures = [convergence, truncation, monte_carlo, refinement];
-    let html = page(outcome, &figures, gallery.as_ref(), &files);
+    let html = page(outcome, &figures, shown.as_ref(), &files);
     files.insert(0, Artifact { name: "report.html".into(), bytes: html.into_bytes() });
     let names = files.iter().map(|file| file.name.as_str()).collect();
     let json = serde_json::to_vec_pretty(&Document { schema: SCHEMA, outcome, files: names })?;

@@ -1,6 +1,6 @@
 //! Where a number lies along an axis, and which numbers are written beside it.
 
-use crate::report::number::{count, power_of_ten, significant};
+use crate::report::number::{count, power_of_ten, scientific, significant};
 
 /// Positive numbers below this are drawn at the foot of a logarithmic axis: far below what rounding leaves of 1.
 pub const SMALLEST_SHOWN: f64 = 1e-17;
@@ -31,7 +31,8 @@ impl Axis {
     /// The values with a margin of some percent on either side, marked at decades, and at 2 and 5 where decades are few.
     pub fn log_tight(values: impl IntoIterator<Item = f64>) -> Self {
         let (low, high) = log_extent(values).unwrap_or((0.0, 1.0));
-        let margin = 0.06 * (high - low).max(0.5);
+        // 2 and 5 lie 0.4 decades apart: with 0.7 there is always something to label.
+        let margin = (0.06 * (high - low)).max(0.5 * (0.7 - (high - low)));
         Self::log_between(low - margin, high + margin)
     }
 
@@ -72,7 +73,7 @@ impl Axis {
         // Label 2 and 5 too where fewer than two decades are in sight.
         if labels.len() < 2 {
             let digits = (first - 1..=last).flat_map(|k| [2, 5].map(|d| f64::from(d) * 10_f64.powi(k)));
-            labels.extend(digits.filter(inside).map(|v| (v, significant(v, 1))));
+            labels.extend(digits.filter(inside).map(|v| (v, if plain { significant(v, 1) } else { scientific(v, 1) })));
             labels.sort_by(|a, b| a.0.total_cmp(&b.0));
         }
         Self { logarithmic: true, low, high, labels, ticks }

@@ -59,14 +59,17 @@ pub fn to_codes(sheet: &Sheet) -> Result<(usize, usize, Vec<u8>), ReportError> {
     let (width, side) = (width as usize, AVERAGED as usize);
     let (out_width, out_height) = (width / side, height as usize / side);
     let mut codes = Vec::with_capacity(3 * out_width * out_height);
-    for y in 0..out_height {
-        for x in 0..out_width {
-            for c in 0..3 {
-                let block = (0..side * side)
-                    .map(|k| usize::from(fine[3 * ((y * side + k / side) * width + x * side + k % side) + c]));
-                codes.push((block.sum::<usize>() / (side * side)) as u8);
+    let mut sums = vec![0_u16; 3 * out_width];
+    for rows in fine.chunks_exact(3 * width * side) {
+        sums.fill(0);
+        for row in rows.chunks_exact(3 * width) {
+            for (sums, block) in sums.chunks_exact_mut(3).zip(row.chunks_exact(3 * side)) {
+                for pixel in block.chunks_exact(3) {
+                    sums.iter_mut().zip(pixel).for_each(|(sum, code)| *sum += u16::from(*code));
+                }
             }
         }
+        codes.extend(sums.iter().map(|sum| (sum / (AVERAGED * AVERAGED) as u16) as u8));
     }
     Ok((out_width, out_height, codes))
 }

@@ -63,14 +63,7 @@ impl Panel {
         sheet.line(vec![(self.left, self.bottom), (self.right, self.bottom)], Stroke::solid(INK, 1.0));
 
         // Name both.
-        let depth = self.x.labels.iter().map(|(_, name)| name.lines().count()).max().unwrap_or(1) as f64;
-        sheet.words(
-            (0.5 * (self.left + self.right), self.bottom + 21.0 + 14.0 * depth),
-            x_name,
-            NORMAL,
-            INK,
-            Anchor::Middle,
-        );
+        sheet.words((0.5 * (self.left + self.right), self.name_height()), x_name, NORMAL, INK, Anchor::Middle);
         let start = if y_labels { self.left - 36.0 } else { self.left };
         sheet.bold_words((start.max(8.0), self.top - 19.0), y_name, NORMAL, INK, Anchor::Start);
     }
@@ -115,11 +108,17 @@ impl Panel {
         clipped
     }
 
-    /// Says what the arrow heads at the foot mean.
+    /// Says what the arrow heads at the foot mean, below the axis where no data is.
     pub fn note_clipped(&self, sheet: &mut Sheet) {
-        let at = (self.left + 6.0, self.bottom - 11.0);
-        arrow_down(sheet, (at.0 + 4.0, at.1 + 3.0), GREY);
-        sheet.words((at.0 + 13.0, at.1), "zero, or below 10⁻¹⁷", SMALL, GREY, Anchor::Start);
+        let (x, y) = (self.left, self.name_height());
+        arrow_down(sheet, (x + 4.5, y + 4.0), GREY);
+        sheet.words((x + 13.0, y), "below 10⁻¹⁷", SMALL, GREY, Anchor::Start);
+    }
+
+    /// Where the name of the lower axis is written: under its labels, which may have several lines.
+    fn name_height(&self) -> f64 {
+        let depth = self.x.labels.iter().map(|(_, name)| name.lines().count()).max().unwrap_or(1);
+        self.bottom + 21.0 + 14.0 * depth as f64
     }
 
     /// Says in the middle of the panel why it is empty.

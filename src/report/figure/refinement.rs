@@ -98,7 +98,7 @@ impl Fit {
 /// A triangle under the fit between the two coarsest levels, its legs one and the order long, and the order in words.
 fn draw_slope(sheet: &mut Sheet, panel: &Panel, fit: &Fit, study: &Refinement) {
     let [coarse, fine, ..] = &study.levels[..] else { return };
-    let (near, far) = (0.82 * coarse.patch_size, 0.82 * fine.patch_size);
+    let (near, far) = (0.9 * coarse.patch_size, 1.15 * fine.patch_size);
     let below = 0.72;
     let corners = [(far, below * fit.at(far)), (near, below * fit.at(far)), (near, below * fit.at(near))];
     let placed: Vec<_> = corners.iter().filter_map(|(x, y)| panel.place(*x, *y)).collect();

@@ -57,6 +57,7 @@ impl Stroke {
 }
 
 impl Sheet {
+    /// An empty sheet of this size in CSS pixels.
     pub fn new(width: u32, height: u32) -> Self {
         Self { width, height, marks: Vec::new() }
     }
@@ -68,21 +69,24 @@ impl Sheet {
         }
     }
 
+    /// A filled polygon; fewer than three points draw nothing.
     pub fn area(&mut self, points: Vec<Point>, colour: Colour, opacity: f64) {
         if points.len() > 2 {
             self.marks.push(Mark::Area { points, colour, opacity });
         }
     }
 
+    /// A filled circle.
     pub fn dot(&mut self, at: Point, radius: f64, colour: Colour) {
         self.marks.push(Mark::Dot { at, radius, colour });
     }
 
-    /// Regular words, 12 px or as given.
+    /// Words, `size` the em in pixels.
     pub fn words(&mut self, at: Point, text: impl Into<String>, size: f64, colour: Colour, anchor: Anchor) {
         self.marks.push(Mark::Words { at, text: text.into(), size, colour, anchor, bold: false });
     }
 
+    /// The same in bold.
     pub fn bold_words(&mut self, at: Point, text: impl Into<String>, size: f64, colour: Colour, anchor: Anchor) {
         self.marks.push(Mark::Words { at, text: text.into(), size, colour, anchor, bold: true });
     }

@@ -8,8 +8,8 @@ mod refinement;
 mod verdict;
 
 use super::Artifact;
-use super::number::{count, significant};
-use super::picture::{Gallery, Shown};
+use super::number::{count, significant, trimmed};
+use super::picture::{PicturesOnPage, Shown};
 use crate::study::StudyOutcome;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -28,14 +28,14 @@ const STYLE: &str = include_str!("style.css");
 pub fn page(
     outcome: &StudyOutcome,
     figures: &[FigureOnPage; 4],
-    gallery: Option<&Gallery>,
+    shown: Option<&PicturesOnPage>,
     files: &[Artifact],
 ) -> String {
     let [convergence, truncation, monte_carlo, refined] = figures;
     let title = escape(&outcome.scene);
     let body = [
         header(outcome),
-        gallery.map(|gallery| pictures(outcome, gallery)).unwrap_or_default(),
+        shown.map(|shown| pictures(outcome, shown)).unwrap_or_default(),
         methods::solvers(outcome, convergence),
         methods::truncation(outcome, truncation),
         methods::estimators(outcome, monte_carlo),
@@ -61,7 +61,7 @@ fn header(outcome: &StudyOutcome) -> String {
     let facts = [
         (count(outcome.n_bundles as u64), "ray bundles"),
         (count(outcome.bands.len() as u64), "colour bands"),
-        (significant(outcome.provenance.patch_size, 2), "patch size"),
+        (trimmed(outcome.provenance.patch_size, 3), "patch size"),
         (super::number::seconds(seconds), "in all"),
     ];
     let facts = facts.iter().map(|(number, name)| format!("<li><b>{}</b> {}</li>", escape(number), escape(name)));
@@ -77,17 +77,17 @@ fn header(outcome: &StudyOutcome) -> String {
 }
 
 /// The solved picture, and the strip of bounces under it.
-fn pictures(outcome: &StudyOutcome, gallery: &Gallery) -> String {
-    let solved = picture(&gallery.solved, &format!("{} from its camera, solved", outcome.scene));
+fn pictures(outcome: &StudyOutcome, on_page: &PicturesOnPage) -> String {
+    let solved = picture(&on_page.solved, &format!("{} from its camera, solved", outcome.scene));
     let strip =
-        gallery.bounces.iter().map(|shown| picture(shown, &format!("{} after {}", outcome.scene, shown.caption)));
-    let grey = if gallery.grey { ", the mean of all bands in grey" } else { "" };
+        on_page.bounces.iter().map(|shown| picture(shown, &format!("{} after {}", outcome.scene, shown.caption)));
+    let grey = if on_page.grey { ", the mean of all bands in grey" } else { "" };
     let lead = format!(
-        "The solved light field from the scene's camera, and the partial sums E, E + K E, E + K E + K² E, … beneath it. \
+        "The solved light field from the scene's camera, and the partial sums E, E + K E, E + K E + K²E, … beneath it. \
          All pictures share one exposure (× {}{grey}); values above 0.8 roll off smoothly to white.",
-        significant(gallery.exposure, 3)
+        significant(on_page.exposure, 3)
     );
-    let strip = if gallery.bounces.is_empty() {
+    let strip = if on_page.bounces.is_empty() {
         String::new()
     } else {
         format!("<div class=\"strip\">\n{}</div>\n", strip.collect::<String>())

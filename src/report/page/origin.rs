@@ -2,7 +2,7 @@
 
 use super::markup::{Column, Table, definitions, escape, section};
 use crate::report::Artifact;
-use crate::report::number::{count, seconds, significant};
+use crate::report::number::{count, seconds, trimmed};
 use crate::study::StudyOutcome;
 
 /// Wall time by stage.
@@ -29,7 +29,7 @@ pub fn provenance(outcome: &StudyOutcome) -> String {
         ("command", source.command.join(" ")),
         ("scene", source.scene.clone()),
         ("scene hash (BLAKE3)", source.scene_hash.clone()),
-        ("patch size", significant(source.patch_size, 6)),
+        ("patch size", trimmed(source.patch_size, 6)),
         ("directions a patch", count(source.n_directions as u64)),
         ("seed", source.seed.to_string()),
         ("bands", outcome.bands.join(", ")),

@@ -66,5 +66,5 @@ fn refinement(outcome: &StudyOutcome) -> Option<String> {
 
 /// A relative number as per cent.
 pub fn percent(value: f64) -> String {
-    format!("{} %", significant(100.0 * value, 2))
+    format!("{}\u{a0}%", significant(100.0 * value, 2))
 }
