@@ -1,9 +1,11 @@
 //! Answers held against answers: norms, z-scores, rates.
 
 mod norm;
+mod pool;
 mod rates;
 mod zscore;
 
 pub use norm::{relative_max, relative_rms};
+pub use pool::{SCORES_A_COMPARISON, pooled};
 pub use rates::{Extrapolation, Level, ObservedOrder, RatesError, observed_order, richardson};
 pub use zscore::{ROUNDING_TOLERANCE, ZVerdict, compare_blocks};

@@ -6,7 +6,7 @@ use super::watch::Watch;
 use super::{Provenance, StudyError};
 use crate::assembly::{Exchange, Gather, Measurement, System, assemble_watched};
 use crate::basis::{Bundles, Resolution};
-use crate::compare::{compare_blocks, relative_max, relative_rms};
+use crate::compare::{compare_blocks, pooled, relative_max, relative_rms};
 use crate::estimator::{Estimate, Estimator, MatrixWalk, PathTracer, Scoring, Truth, estimate_watched};
 use crate::linalg::{Block, LinearOperator, max_abs};
 use crate::oracle;
@@ -260,7 +260,9 @@ fn estimate_growing(
         samples *= 4;
     }
     let estimate = total.ok_or(StudyError::NoEstimator)?;
-    let verdict = compare_blocks(truth, &estimate.mean, &estimate.variance_of_mean, settings.significance);
+    let [reference, mean, variance] =
+        pooled(truth, &estimate.mean, &estimate.variance_of_mean, weights, estimate.n_samples);
+    let verdict = compare_blocks(&reference, &mean, &variance, settings.significance);
     let (n, errors): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (p.samples_per_bundle as f64, p.error)).unzip();
     let run = EstimatorRun {
         estimator: estimator.name().to_string(),
