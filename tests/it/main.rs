@@ -1,11 +1,3 @@
-//! Integration tests, through the public interface, in one binary; a module a subject.
+//! Tests through the public interface, in one binary.
 
-mod compare;
-mod gallery;
-mod image;
-mod medium;
-mod report;
-mod sampling;
-mod scattering;
-mod sphere;
-mod stats;
+mod format;

@@ -139,7 +139,7 @@ impl Code {
             Code::MisplacedElement => "The element exists, but not inside this parent.",
             Code::MissingValue => "An attribute, a parameter or a nested plugin that is required was not given.",
             Code::RepeatedValue => "Each parameter, and each nested plugin of a kind, may be given once.",
-            Code::WrongType => "The parameter exists, but is given by another element: <float>, <integer>, <string>, …",
+            Code::WrongType => "The parameter exists, but is given by another element, such as <float> or <string>.",
             Code::UnsupportedValue => "Mitsuba 3 allows this value, the diffuse subset does not.",
             Code::InvalidNumber => "A finite decimal number was expected.",
             Code::WrongCount => "A list of numbers has too few or too many entries.",

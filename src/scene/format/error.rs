@@ -13,8 +13,8 @@ const N_COLUMNS_BEFORE: usize = 40;
 /// Words quoted from a file are cut after this many characters.
 const N_QUOTED: usize = 60;
 
-/// A file that was refused. Shows itself in several lines, with the source line and a caret; the parts are in [`Report`],
-/// to which it dereferences.
+/// A file that was refused. Shows itself in several lines, with the source line and a caret; the parts are in
+/// [`Report`], to which it dereferences.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{}", .report.show())]
 pub struct FormatError {

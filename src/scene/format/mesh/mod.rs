@@ -9,6 +9,9 @@ use super::{Code, FormatError, Position};
 use crate::geometry::{Affine3, Polygon, PolygonError, Vec3};
 use std::path::Path;
 
+/// A scene may have this many polygons, however small its files: a mesh may be used many times.
+pub const MAX_SCENE_POLYGONS: usize = 1 << 20;
+
 /// Vertices and faces in one block each; face f visits `corners[ends[f − 1]..ends[f]]`.
 #[derive(Debug, Default)]
 pub(super) struct Mesh {
@@ -40,8 +43,8 @@ impl MeshFile<'_> {
 
 /// Reads a mesh file, moves it by `to_world` and makes polygons; `reversed` turns every face.
 ///
-/// The front of a face is the side from which its transformed vertices run counter-clockwise. Faces that are not planar to
-/// rounding are cut into triangles.
+/// The front of a face is the side from which its transformed vertices run counter-clockwise. Faces that are not
+/// planar to rounding are cut into triangles.
 ///
 /// # Errors
 /// Whatever the format's reader refuses; a face without area, one that visits a vertex twice, one that is not convex.
@@ -57,6 +60,10 @@ pub(super) fn read(
     if mesh.ends.is_empty() {
         let position = if is_text { Position::File } else { Position::Byte { offset: bytes.len() } };
         return Err(FormatError::new(Code::MalformedMesh, path, position, "the mesh has no faces"));
+    }
+    if mesh.ends.len() > MAX_SCENE_POLYGONS {
+        let found = format!("the mesh has {} faces, a scene may have {MAX_SCENE_POLYGONS}", mesh.ends.len());
+        return Err(FormatError::new(Code::BeyondLimits, path, Position::File, found));
     }
     let mut polygons = Vec::with_capacity(mesh.ends.len());
     let mut start = 0;
@@ -91,8 +98,14 @@ fn repeated(corners: &[u32]) -> Option<u32> {
     sorted.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0])
 }
 
-/// One polygon where the vertices lie in a plane, else a fan of triangles.
-pub(super) fn split(vertices: Vec<Vec3>) -> Result<Vec<Polygon>, PolygonError> {
+/// One polygon where the vertices lie in a plane, else a fan of triangles. Edges without length are left out.
+pub(super) fn split(mut vertices: Vec<Vec3>) -> Result<Vec<Polygon>, PolygonError> {
+    if vertices.len() > 3 {
+        vertices.dedup();
+        if vertices.len() > 1 && vertices.first() == vertices.last() {
+            vertices.pop();
+        }
+    }
     if vertices.len() <= 3 {
         return Polygon::new(vertices).map(|p| vec![p]);
     }
@@ -115,7 +128,8 @@ pub(super) fn split(vertices: Vec<Vec3>) -> Result<Vec<Polygon>, PolygonError> {
 /// A triangle of a fan may turn back by this part of the face's area: the rounding of a cross product, with a margin.
 const FAN_TOLERANCE: f64 = 1e-12;
 
-/// Triangles around the first vertex from which all of them have area; the corners must all turn left seen along `whole`.
+/// Triangles around the first vertex from which all of them have area; the corners must all turn left seen along
+/// `whole`.
 fn fan_of(vertices: &[Vec3], whole: Vec3) -> Result<Vec<Polygon>, PolygonError> {
     let n = vertices.len();
     for vertex in 0..n {

@@ -1,7 +1,8 @@
 //! Wavefront OBJ: the polygons of it.
 //!
-//! `v` and `f` make the mesh. `vn` and `vt` are checked and left aside: facets are flat and have one colour. `o`, `g`, `s`, `usemtl`
-//! and `mtllib` are accepted and left aside: a file is one surface, whose material is named by the scene. Anything else is refused.
+//! `v` and `f` make the mesh. `vn` and `vt` are checked and left aside: facets are flat and have one colour. `o`,
+//! `g`, `s`, `usemtl` and `mtllib` are accepted and left aside: a file is one surface, whose material is named by the
+//! scene. Anything else is refused.
 
 use super::{Mesh, MeshFile};
 use crate::geometry::Vec3;

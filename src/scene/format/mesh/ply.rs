@@ -1,7 +1,8 @@
 //! PLY, the polygon file format: ascii, binary little and big endian.
 //!
-//! `x`, `y`, `z` of `vertex` and `vertex_indices` (or `vertex_index`) of `face` make the mesh. Other properties and elements are
-//! skipped by their announced types. Memory is bounded by the bytes that are there, not by what the header announces.
+//! `x`, `y`, `z` of `vertex` and `vertex_indices` (or `vertex_index`) of `face` make the mesh. Other properties and
+//! elements are skipped by their announced types. Memory is bounded by the bytes that are there, not by what the
+//! header announces.
 
 use super::ply_header::{self, Encoding, Header, PlyElement, Scalar};
 use super::{Mesh, MeshFile};
@@ -34,7 +35,8 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<(Mesh, bool), FormatErro
     Ok((mesh, is_text))
 }
 
-/// Checks, before anything is read, that the elements are of the right kind and that the file is long enough for them.
+/// Checks, before anything is read, that the elements are of the right kind and that the file is long enough for
+/// them.
 fn check_announced(file: MeshFile, header: &Header) -> Result<(), FormatError> {
     let mut n_needed = 0u64;
     for element in &header.elements {

@@ -3,8 +3,8 @@
 use super::super::Code;
 use super::super::error::{closest, quoted};
 
-/// The expansions of one scene may come to this many bytes in all: definitions may use definitions, and would otherwise
-/// double at every line.
+/// The expansions of one scene may come to this many bytes in all: definitions may use definitions, and would
+/// otherwise double at every line.
 const MAX_EXPANSION: usize = 16 << 20;
 
 /// A scene may have this many definitions: each `$` is held against all of them.
@@ -67,8 +67,8 @@ impl Definitions {
         Ok(())
     }
 
-    /// Replaces every `$name` by its value, the longest name that fits first; `\$` stands for a dollar sign. What comes out
-    /// of an expansion is not expanded again.
+    /// Replaces every `$name` by its value, the longest name that fits first; `\$` stands for a dollar sign. What
+    /// comes out of an expansion is not expanded again.
     pub(super) fn expand(&mut self, text: &str) -> Result<String, Refusal> {
         let mut out = String::new();
         let mut rest = text;

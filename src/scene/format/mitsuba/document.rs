@@ -137,7 +137,8 @@ impl Document {
         Err(error.expected("the id of an element of this scene").suggest(closest(&id.value, &known)))
     }
 
-    /// The file that an attribute names: beside the file it is named in, beside the scene, or in a folder named by `path`.
+    /// The file that an attribute names: beside the file it is named in, beside the scene, or in a folder named by
+    /// `path`.
     pub(super) fn find_file(&self, name: &Attribute) -> PathBuf {
         let beside = |source: usize| self.sources[source].path.parent().unwrap_or(Path::new(""));
         let folders = [beside(name.value_span.source), beside(0)].into_iter();

@@ -9,8 +9,8 @@ const MAX_ATTRIBUTES: usize = 16;
 
 /// Scans the markup once for document types, namespaces, deep nesting and crowded tags.
 ///
-/// The parser compares each attribute of a tag with all before it, and copies the namespaces of a parent into its children:
-/// both are quadratic in the file's size. Malformed markup passes; the parser refuses it.
+/// The parser compares each attribute of a tag with all before it, and copies the namespaces of a parent into its
+/// children: both are quadratic in the file's size. Malformed markup passes; the parser refuses it.
 ///
 /// # Errors
 /// The code, the offending range of bytes, and what was found.

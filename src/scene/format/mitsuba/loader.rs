@@ -68,7 +68,21 @@ impl Loader {
             Err(refusal) => return refused(&self.document, refusal),
         };
 
-        // Take the text, without a byte order mark.
+        // Move what it holds into the document.
+        self.open.push(true_path);
+        let held = self.text(path, bytes, include.map(|(parent, _)| parent));
+        self.open.pop();
+        match include {
+            None => held,
+            Some((_, name)) => {
+                held.map_err(|error| error.note(format!("included at {}", self.document.place(&name.value_span))))
+            }
+        }
+    }
+
+    /// Takes the text of a file, and from it the elements.
+    fn text(&mut self, path: &Path, bytes: Vec<u8>, parent: Option<usize>) -> Result<(), FormatError> {
+        // Hold it to be text, without a byte order mark.
         let text = String::from_utf8(bytes).map_err(|e| {
             let at = e.utf8_error().valid_up_to();
             let found = format!("byte 0x{:02x} is not UTF-8", e.as_bytes()[at]);
@@ -76,20 +90,17 @@ impl Loader {
         })?;
         let text: Arc<str> = text.strip_prefix('\u{feff}').unwrap_or(&text).into();
 
-        // Parse it, and move what it holds into the document.
+        // Parse it once it cannot cost more than its size.
         let fail = |code, range, found: String| FormatError::new(code, path, locate(text.as_bytes(), range), found);
         guard::check(&text).map_err(|(code, range, found)| fail(code, range, found))?;
         let options = roxmltree::ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..Default::default() };
         let tree = roxmltree::Document::parse_with_options(&text, options).map_err(|e| malformed(path, &text, &e))?;
         self.document.sources.push(Source { path: path.to_path_buf(), text: text.clone() });
-        self.open.push(true_path);
-        self.root(tree.root_element(), include.map(|(parent, _)| parent))?;
-        self.open.pop();
-        Ok(())
+        self.root(tree.root_element(), parent)
     }
 
-    /// Takes the root of a file. A `scene` that is included gives its children to the including element; anything else,
-    /// itself.
+    /// Takes the root of a file. A `scene` that is included gives its children to the including element; anything
+    /// else, itself.
     fn root(&mut self, node: roxmltree::Node, parent: Option<usize>) -> Result<(), FormatError> {
         let source = self.document.sources.len() - 1;
         let mut element = self.element(node, source)?;
@@ -191,8 +202,7 @@ impl Loader {
         self.document.check_attributes(element, &["filename"], &[])?;
         let name = self.document.required(element, "filename")?;
         let path = self.document.find_file(name);
-        let place = self.document.place(&element.span);
-        self.file(&path, Some((parent, name))).map_err(|error| error.note(format!("included at {place}")))
+        self.file(&path, Some((parent, name)))
     }
 
     fn folder(&mut self, element: &Element, _: usize) -> Result<(), FormatError> {
@@ -236,13 +246,6 @@ impl Loader {
         let tag = node.tag_name().name().to_string();
         let start = node.range().start + 1;
         let span = Span { source, range: start..start + tag.len() };
-        if node.tag_name().namespace().is_some() {
-            return Err(self.document.error(
-                Code::UnknownElement,
-                &span,
-                "XML namespaces have no meaning in scene files",
-            ));
-        }
         let mut attributes = Vec::new();
         for attribute in node.attributes() {
             let name_span = Span { source, range: attribute.range_qname() };
@@ -256,8 +259,8 @@ impl Loader {
                 false => Ok(attribute.value().to_string()),
             };
             let value = value.map_err(|refusal| refused(&self.document, &value_span, refusal))?;
-            let raw = &self.document.sources[source].text[value_span.range.clone()];
-            let literal = raw == value;
+            let raw = self.document.sources[source].text.get(value_span.range.clone());
+            let literal = raw == Some(value.as_str());
             attributes.push(Attribute { name: attribute.name().to_string(), value, literal, name_span, value_span });
         }
         Ok(Element { tag, span, attributes, children: Vec::new() })

@@ -17,7 +17,8 @@ static EMITTERS: [Plugin; 1] = [Plugin { name: "area", parameters: &[("radiance"
 const DEFAULT_REFLECTANCE: f64 = 0.5;
 /// The radiance of an emitter of which nothing is said.
 const DEFAULT_RADIANCE: f64 = 1.0;
-/// Linear sRGB of the spectrum that is 1 at every wavelength (illuminant E): row sums of the matrix from CIE XYZ, ITU-R BT.709.
+/// Linear sRGB of the spectrum that is 1 at every wavelength (illuminant E): row sums of the matrix from CIE XYZ,
+/// ITU-R BT.709.
 const ILLUMINANT_E: [f64; 3] = [
     3.240479 - 1.537150 - 0.498535,
     -0.969256 + 1.875991 + 0.041556, //

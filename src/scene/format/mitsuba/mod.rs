@@ -1,6 +1,7 @@
 //! Mitsuba 3 XML, the diffuse subset.
 //!
-//! A file becomes a [`Document`](document::Document), whose elements are read as plugins, each by the table of what it takes.
+//! A file becomes a [`Document`](document::Document), whose elements are read as plugins, each by the table of what
+//! it takes.
 
 mod definitions;
 mod document;
@@ -17,7 +18,7 @@ mod value;
 
 pub use tessellation::{N_DISK_RINGS, N_MERIDIANS, N_PARALLELS};
 
-use super::{Code, FormatError};
+use super::{Code, FormatError, MAX_SCENE_POLYGONS};
 use crate::scene::{Camera, Scene, SceneDescription, SceneError, Surface, rgb_bands};
 use document::{ROOT, Span};
 use std::collections::{HashMap, HashSet};
@@ -36,6 +37,7 @@ pub(super) fn read(path: &Path, definitions: &[(String, String)]) -> Result<Scen
     let mut shapes: Vec<(Surface, &str, &Span)> = Vec::new();
     let mut camera: Option<(Camera, &Span)> = None;
     let mut integrator = None;
+    let mut n_polygons = 0;
     for element in root.children.iter().map(|c| &document.elements[*c]) {
         let once = |first: Option<&Span>| match first {
             None => Ok(()),
@@ -48,6 +50,11 @@ pub(super) fn read(path: &Path, definitions: &[(String, String)]) -> Result<Scen
         match element.tag.as_str() {
             "shape" => {
                 let (surface, plugin) = shape::surface(&document, element)?;
+                n_polygons += surface.polygons.len();
+                if n_polygons > MAX_SCENE_POLYGONS {
+                    let found = format!("the scene has more than {MAX_SCENE_POLYGONS} polygons");
+                    return Err(document.error(Code::BeyondLimits, &element.span, found));
+                }
                 shapes.push((surface, plugin, &element.span));
             }
             "bsdf" => drop(material::material(&document, element)?),

@@ -59,7 +59,8 @@ pub(super) struct Object<'a> {
 }
 
 impl<'a> Object<'a> {
-    /// Checks an element against the plugins of its kind: its type, every parameter's name and value, every nested element.
+    /// Checks an element against the plugins of its kind: its type, every parameter's name and value, every nested
+    /// element.
     pub(super) fn open(
         document: &'a Document,
         element: &'a Element,

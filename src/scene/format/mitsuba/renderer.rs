@@ -1,4 +1,5 @@
-//! `integrator` and `sampler`: checked by name, then left aside, for they steer a renderer and are no part of the scene.
+//! `integrator` and `sampler`: checked by name, then left aside, for they steer a renderer and are no part of the
+//! scene.
 
 use super::document::{Document, Element};
 use super::object::{Kind, Object, Plugin};

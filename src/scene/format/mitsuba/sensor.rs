@@ -83,7 +83,8 @@ pub(super) fn camera(document: &Document, element: &Element) -> Result<Camera, F
     let aspect = film.width as f64 / film.height as f64;
     let tangent_half_width = tangent_half_width(&object, aspect)?;
 
-    // Take the frame from the transform: x appears on the left of the picture, y points up in it, z along the line of sight.
+    // Take the frame from the transform: x appears on the left of the picture, y points up in it, z along the line of
+    // sight.
     let to_world = object.transform("to_world")?;
     let axes = [to_world.matrix3.x_axis, to_world.matrix3.y_axis, to_world.matrix3.z_axis];
     let skewed = |i: usize| axes[i].dot(axes[(i + 1) % 3]).abs() > FRAME_TOLERANCE;

@@ -91,7 +91,8 @@ fn outline_polygons(
         }
     };
 
-    // Turn the polygons where a mirroring transform turned their winding but not the shape's normals: all shapes but the sphere.
+    // Turn the polygons where a mirroring transform turned their winding but not the shape's normals: all shapes but
+    // the sphere.
     let reversed = flipped ^ (mirrored && outline.curved != Some("sphere"));
     let mut polygons = Vec::with_capacity(outline.polygons.len());
     for corners in &outline.polygons {

@@ -73,7 +73,8 @@ impl Outline {
         Self { curved: Some("sphere"), polygons, arcs: Vec::new(), sphere: Some([centre, pole(1.0)]) }
     }
 
-    /// The unit disk in the plane z = 0, facing +z: a square grid whose concentric squares became circles (Shirley and Chiu 1997).
+    /// The unit disk in the plane z = 0, facing +z: a square grid whose concentric squares became circles (Shirley
+    /// and Chiu 1997).
     pub(super) fn disk() -> Self {
         let n = N_DISK_RINGS as i64;
         let vertex = |i: i64, j: i64| {
@@ -98,7 +99,8 @@ impl Outline {
         Self { curved: Some("disk"), polygons, arcs, sphere: None }
     }
 
-    /// The wall of a cylinder around the line from `p0` to `p1`, facing outward, without its caps. The points must differ.
+    /// The wall of a cylinder around the line from `p0` to `p1`, facing outward, without its caps. The points must
+    /// differ.
     pub(super) fn cylinder(p0: Vec3, p1: Vec3, radius: f64) -> Self {
         let axis = (p1 - p0).normalize();
         let (across, along) = axis.any_orthonormal_pair();
@@ -131,7 +133,8 @@ impl Outline {
     }
 }
 
-/// The point at k/n of the way around the unit circle; the same bits for k and k + n, and mirror images for mirrored k.
+/// The point at k/n of the way around the unit circle; the same bits for k and k + n, and mirror images for mirrored
+/// k.
 fn circle(k: usize, n: usize) -> Vec3 {
     let k = k % n;
     // Turn the first octant: sine and cosine of the others are its values with signs changed and swapped.

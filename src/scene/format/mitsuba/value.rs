@@ -53,8 +53,8 @@ pub(super) fn boolean(document: &Document, attribute: &Attribute) -> Result<bool
     Ok(word(document, attribute, &["false", "true"])? == 1)
 }
 
-/// A vector given as `value`, with three numbers or one for all, or as `x`, `y`, `z`; `other` are further attributes that
-/// the element must have, and `missing` what stands for a coordinate that is not given, where that is allowed.
+/// A vector given as `value`, with three numbers or one for all, or as `x`, `y`, `z`; `other` are further attributes
+/// that the element must have, and `missing` what stands for a coordinate that is not given, where that is allowed.
 pub(super) fn vector(
     document: &Document,
     element: &Element,
