@@ -1,4 +1,10 @@
-use etendue::{assembly::*, basis::*, gallery, solver::{self, Solver}, linalg::*};
+use etendue::{
+    assembly::*,
+    basis::*,
+    gallery,
+    linalg::*,
+    solver::{self, Solver},
+};
 use std::time::Instant;
 fn main() {
     let name = std::env::args().nth(1).unwrap();
@@ -16,8 +22,23 @@ fn main() {
         let t = Instant::now();
         match s.solve(system.equation(), &mut ()) {
             Ok(sol) => {
-                let e = reference.as_ref().map_or(0.0, |r| { let mut d = r.clone(); d.add_scaled(-1.0, &sol.radiance); d.max_abs() / r.max_abs() });
-                println!("{:14} {:9} it {:5} products {:8.1} {:.2}s true {:.1e} err {:.1e} bracket {:?} mean {:?}", s.name(), sol.report.stop.to_string(), sol.report.n_iterations, sol.report.products, t.elapsed().as_secs_f64(), sol.report.true_residual, e, sol.report.bracket.as_ref().map(|b| b.relative_width(&sol.radiance)), sol.radiance.row(0).collect::<Vec<_>>());
+                let e = reference.as_ref().map_or(0.0, |r| {
+                    let mut d = r.clone();
+                    d.add_scaled(-1.0, &sol.radiance);
+                    d.max_abs() / r.max_abs()
+                });
+                println!(
+                    "{:14} {:9} it {:5} products {:8.1} {:.2}s true {:.1e} err {:.1e} bracket {:?} mean {:?}",
+                    s.name(),
+                    sol.report.stop.to_string(),
+                    sol.report.n_iterations,
+                    sol.report.products,
+                    t.elapsed().as_secs_f64(),
+                    sol.report.true_residual,
+                    e,
+                    sol.report.bracket.as_ref().map(|b| b.relative_width(&sol.radiance)),
+                    sol.radiance.row(0).collect::<Vec<_>>()
+                );
                 reference.get_or_insert(sol.radiance);
             }
             Err(e) => println!("{} {e}", s.name()),

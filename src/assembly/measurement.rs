@@ -136,11 +136,19 @@ impl<'a> Measurement<'a> {
             .collect();
 
         let value = |p: usize, slot: usize| lines[p / width][(p % width) * (n_bands + stride) + slot];
-        (0..=n_fields).map(|f| Block::from_fn(self.n_pixels(), n_bands, |p, band| value(p, f * n_bands + band))).collect()
+        (0..=n_fields)
+            .map(|f| Block::from_fn(self.n_pixels(), n_bands, |p, band| value(p, f * n_bands + band)))
+            .collect()
     }
 
     /// Measures one pixel: `seen(band, emission)` and `gathered(bundle, band, weight)`, an entry of W, each any number of times.
-    pub fn pixel(&self, x: usize, y: usize, mut seen: impl FnMut(usize, f64), mut gathered: impl FnMut(usize, usize, f64)) {
+    pub fn pixel(
+        &self,
+        x: usize,
+        y: usize,
+        mut seen: impl FnMut(usize, f64),
+        mut gathered: impl FnMut(usize, usize, f64),
+    ) {
         let film = &self.camera.film;
         let key = mix(&[self.gather.seed, (y * film.width + x) as u64]);
         let positions = Kronecker::<2>::new(key);

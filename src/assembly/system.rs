@@ -65,7 +65,8 @@ pub fn assemble_watched(
         }
     }
 
-    let exchange::Assembled { exchange, sinks, repair_scale, report } = exchange::compute(scene, bundles, settings, progress);
+    let exchange::Assembled { exchange, sinks, repair_scale, report } =
+        exchange::compute(scene, bundles, settings, progress);
     let exchange = Arc::new(exchange);
     let etendue: Arc<[f64]> = bundles.etendue().into();
     let root = Block::from_fn(n, n_bands, |i, band| albedo.get(i, band).sqrt());

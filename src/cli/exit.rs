@@ -71,7 +71,9 @@ impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Self {
         match error {
             StudyError::Solve(error) => error.into(),
-            StudyError::NoSolver | StudyError::NoEstimator | StudyError::Merge(_) => Self::new(Exit::Internal, error.to_string()),
+            StudyError::NoSolver | StudyError::NoEstimator | StudyError::Merge(_) => {
+                Self::new(Exit::Internal, error.to_string())
+            }
             other => Self::new(Exit::Input, other.to_string()),
         }
     }

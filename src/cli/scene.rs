@@ -4,8 +4,8 @@ use super::arguments::SceneArguments;
 use super::exit::{Exit, Failure};
 use super::memory::{self, Bytes};
 use crate::basis::{Bundles, Resolution};
-use crate::scene::Scene;
 use crate::gallery;
+use crate::scene::Scene;
 use std::path::Path;
 
 /// A preset for files, which have none: about this many patches.

@@ -73,7 +73,8 @@ pub fn run(arguments: &Arguments, solve: &Solve, command: Vec<String>) -> Result
     let method = solver::all(solve.tolerance).into_iter().find(|method| method.name() == solve.solver);
     let method = method.ok_or_else(|| Failure::new(Exit::Usage, format!("no solver '{}'", solve.solver)))?;
     let factors = if method.is_direct() { 16 } else { 0 };
-    let needed = |n: usize| System::memory_estimate(n).saturating_add((n as u64).saturating_pow(2).saturating_mul(factors));
+    let needed =
+        |n: usize| System::memory_estimate(n).saturating_add((n as u64).saturating_pow(2).saturating_mul(factors));
     let chosen = choose(&solve.scene, needed)?;
     let Chosen { scene, resolution, n_bundles, is_preset } = &chosen;
     if !arguments.quiet {

@@ -19,14 +19,20 @@ pub fn run(arguments: &Arguments, study: &Study, command: Vec<String>) -> Result
     // A study holds the matrix, its factors, its tables for walks, and a second matrix for comparison.
     let needed = |n: usize| {
         let square = (n as u64).saturating_mul(n as u64);
-        System::memory_estimate(n).saturating_add(square.saturating_mul(24)).saturating_add(MatrixWalk::memory_estimate(n))
+        System::memory_estimate(n)
+            .saturating_add(square.saturating_mul(24))
+            .saturating_add(MatrixWalk::memory_estimate(n))
     };
     let Chosen { scene, resolution, n_bundles, is_preset } = choose(&study.scene, needed)?;
     let folder = study.output.clone().unwrap_or_else(|| PathBuf::from("out").join(folder_name(scene.name())));
     report::check_folder(&folder)?;
     if !arguments.quiet {
         let preset = if is_preset { " (preset)" } else { "" };
-        output::error(&format!("{}: {n_bundles} bundles at patch size {}{preset}", scene.name(), resolution.patch_size));
+        output::error(&format!(
+            "{}: {n_bundles} bundles at patch size {}{preset}",
+            scene.name(),
+            resolution.patch_size
+        ));
         tessellations(&scene).iter().for_each(|sentence| output::error(&format!("note: {sentence}")));
     }
 
@@ -108,7 +114,10 @@ fn summary(outcome: &StudyOutcome, folder: &Path) -> String {
     text += &format!("\n{:26} {:>9} {:>10} {:>10} {:>10}\n", "estimator", "slope", "seconds", "worst |z|", "p");
     for run in &outcome.estimators {
         let name = format!("{} ({})", run.estimator, run.truth);
-        text += &format!("{name:26} {:>9.2} {:>10.3} {:>10.2} {:>10.1e}\n", run.slope, run.seconds, run.worst_z, run.p_value);
+        text += &format!(
+            "{name:26} {:>9.2} {:>10.3} {:>10.2} {:>10.1e}\n",
+            run.slope, run.seconds, run.worst_z, run.p_value
+        );
     }
     let refinement = &outcome.refinement;
     text += &format!(

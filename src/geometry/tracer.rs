@@ -226,7 +226,8 @@ impl Tracer {
         let reach = self.radius + largest(ray.origin - self.centre);
         let coordinates = reach + largest(self.centre) + largest(ray.origin);
         let direction = largest(ray.direction);
-        let doubt = 32.0 * f64::EPSILON * reach * (reach * (direction + largest(beyond)) + 2.0 * coordinates * direction);
+        let doubt =
+            32.0 * f64::EPSILON * reach * (reach * (direction + largest(beyond)) + 2.0 * coordinates * direction);
         Probe { ray: *ray, beyond, doubt }
     }
 }

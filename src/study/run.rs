@@ -74,9 +74,8 @@ pub fn run(
         ("path tracer", &tracer, settings.path_samples),
     ];
     for (stage, estimator, samples) in everyone {
-        let (run, estimate) = stages.time(stage, |progress| {
-            estimate_growing(estimator, samples, settings, &truth, &system, progress)
-        })?;
+        let (run, estimate) =
+            stages.time(stage, |progress| estimate_growing(estimator, samples, settings, &truth, &system, progress))?;
         estimators.push(run);
         last = Some(estimate);
     }
@@ -97,9 +96,9 @@ pub fn run(
     })?;
 
     let pictures = match Measurement::new(scene, &bundles, settings.gather) {
-        Some(measurement) => Some(stages.time("gather", |progress| {
-            picture(&measurement, &system, &truth, settings.n_bounces, progress)
-        })),
+        Some(measurement) => {
+            Some(stages.time("gather", |progress| picture(&measurement, &system, &truth, settings.n_bounces, progress)))
+        }
         None => None,
     };
 
@@ -254,7 +253,11 @@ fn estimate_growing(
         };
         if samples > 1 {
             let error = relative_rms(&merged.mean, truth, weights);
-            points.push(SamplePoint { samples_per_bundle: samples, error, standard_error: predicted(&merged, truth, weights) });
+            points.push(SamplePoint {
+                samples_per_bundle: samples,
+                error,
+                standard_error: predicted(&merged, truth, weights),
+            });
         }
         total = Some(merged);
         samples *= 4;
