@@ -1,1 +1,73 @@
-//! TODO-SKELETON
+//! Random answers to L = E + K L: walks on the matrix, and light paths in the scene itself.
+//!
+//! An estimator draws independent samples whose expectation is the radiance of the bundles. [`estimate`] averages them and keeps
+//! the variance of every mean, so that each number can be held against the deterministic ones by its own error bar. A sample is
+//! a function of (seed, estimator, start, number) alone: more samples, other threads, another order change none.
+
+mod emitters;
+mod error;
+mod estimate;
+mod matrix_walk;
+mod path_tracer;
+mod run;
+mod score;
+mod throughput;
+
+pub use error::EstimatorError;
+pub use estimate::{Estimate, MergeError, WeightedMean};
+pub use matrix_walk::{MatrixWalk, Scoring};
+pub use path_tracer::PathTracer;
+pub use run::{estimate, estimate_range, estimate_watched};
+pub use score::Score;
+
+use crate::sampling::Stream;
+use std::fmt;
+use std::ops::Range;
+
+/// Which of the two truths a random answer has as its expectation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Truth {
+    /// (I − K)⁻¹E of the assembled K.
+    Discrete,
+    /// The scene's own radiance, averaged over the étendue of every bundle.
+    Continuous,
+}
+
+impl fmt::Display for Truth {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Discrete => "discrete",
+            Self::Continuous => "continuous",
+        })
+    }
+}
+
+/// A way of drawing random numbers whose expectation is the radiance of the bundles.
+///
+/// Its samples begin at *starts*, and every start owns the bundles that its samples score. A gathering estimator has one start a
+/// bundle and scores that bundle alone; a shooting one has a single start and scores all of them. No bundle belongs to two starts.
+pub trait Estimator: Sync {
+    /// Name on the command line and in reports. It keys the random numbers: two estimators of different names are independent.
+    fn name(&self) -> &'static str;
+
+    /// What the samples have as their expectation.
+    fn truth(&self) -> Truth;
+
+    fn n_bundles(&self) -> usize;
+
+    fn n_bands(&self) -> usize;
+
+    /// How many starts there are, at most 2³².
+    fn n_starts(&self) -> usize {
+        self.n_bundles()
+    }
+
+    /// The bundles that samples from this start may score.
+    fn reach(&self, start: usize) -> Range<usize> {
+        start..start + 1
+    }
+
+    /// Adds one sample to the score. For every bundle in reach, the expectation of what is added is its radiance; bundles to which
+    /// nothing is added count as zero.
+    fn sample(&self, start: usize, stream: &mut Stream, score: &mut Score);
+}

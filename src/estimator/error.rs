@@ -1,0 +1,19 @@
+//! Why an equation or a scene cannot be sampled.
+
+use crate::sampling::AliasError;
+use thiserror::Error;
+
+/// What stands in the way of an unbiased sample.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum EstimatorError {
+    #[error("the propagation is no table of probabilities: {0}")]
+    Propagation(#[source] AliasError),
+    #[error("a walk from bundle {bundle} never ends: nothing it can reach absorbs in every band, or lets light out")]
+    NeverEnds { bundle: usize },
+    #[error("emitters cannot be chosen by their power: {0}")]
+    Emitters(#[source] AliasError),
+    #[error("element {element} is not a patch: paths start on surfaces")]
+    NotAPatch { element: usize },
+    #[error("element {element} lies on facet {facet}, but the scene has {n_facets}: the bundles are another scene's")]
+    ForeignBundles { element: usize, facet: usize, n_facets: usize },
+}
