@@ -1,7 +1,6 @@
 //! Integration tests, through the public interface, in one binary; a module a subject.
 
 mod compare;
-mod estimator;
 mod format;
 mod gallery;
 mod image;
