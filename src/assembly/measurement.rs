@@ -151,8 +151,9 @@ impl<'a> Measurement<'a> {
     ) {
         let film = &self.camera.film;
         let key = mix(&[self.gather.seed, (y * film.width + x) as u64]);
-        let positions = Kronecker::<2>::new(key);
-        // Draw positions by the filter's magnitude: each then weighs by its sign alone.
+        // Draw positions by the filter's magnitude: each then weighs by its sign alone. All pixels use the same ones, so that edges
+        // come out even.
+        let positions = Kronecker::<2>::new(self.gather.seed);
         let drawn: Vec<[(f64, f64); 2]> =
             (0..self.gather.samples).map(|s| positions.point(s).map(|u| self.filter.draw(u))).collect();
         let total: f64 = drawn.iter().map(|[(_, sx), (_, sy)]| sx * sy).sum();

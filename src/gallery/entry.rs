@@ -48,7 +48,7 @@ static ENTRIES: [Entry; 7] = [
         summary: "the Cornell box built into Mitsuba 3: open front, two boxes, a lamp under the ceiling",
         build: cornell_box,
         exact: || None,
-        patch_size: 0.2,
+        patch_size: 0.125,
         closed: false,
     },
     Entry {

@@ -145,7 +145,7 @@ pub struct Refinement {
     pub observed_order: f64,
     /// Standard error of the order.
     pub order_standard_error: f64,
-    /// Estimated discretisation error of the finest level's surface means, relative.
+    /// Estimated discretisation error of the finest level's mean reflected radiance, relative.
     pub finest_error: f64,
     /// True if every surface's mean at the finest level agrees with the path tracer within discretisation plus statistical error.
     pub agrees: bool,
@@ -156,7 +156,7 @@ pub struct Refinement {
 pub struct RefinementLevel {
     pub patch_size: f64,
     pub n_bundles: usize,
-    /// Étendue-weighted root mean square difference of the surface means from the path tracer's, relative.
+    /// Area-weighted root mean square difference of the surfaces' mean reflected radiance from the path tracer's, relative.
     pub error: f64,
     /// The statistical part of `error`: what the path tracer's own noise contributes.
     pub noise: f64,

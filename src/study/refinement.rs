@@ -16,14 +16,16 @@ const ORDERS: (f64, f64) = (1.0, 2.0);
 pub struct LevelSolution {
     pub patch_size: f64,
     pub n_bundles: usize,
-    /// Étendue-weighted mean radiance: surfaces × bands.
-    pub means: Block,
+    /// Étendue-weighted mean of the reflected radiance, L − E: surfaces × bands.
+    pub reflected: Block,
 }
 
 impl LevelSolution {
-    pub fn new(scene: &Scene, bundles: &Bundles, radiance: &Block) -> Self {
-        let (means, _) = surface_means(scene, bundles, radiance, None);
-        Self { patch_size: bundles.resolution().patch_size, n_bundles: bundles.n_bundles(), means }
+    pub fn new(scene: &Scene, bundles: &Bundles, radiance: &Block, emission: &Block) -> Self {
+        let mut reflected = radiance.clone();
+        reflected.add_scaled(-1.0, emission);
+        let (reflected, _) = surface_means(scene, bundles, &reflected, None);
+        Self { patch_size: bundles.resolution().patch_size, n_bundles: bundles.n_bundles(), reflected }
     }
 }
 
@@ -50,7 +52,7 @@ pub fn surface_means(scene: &Scene, bundles: &Bundles, values: &Block, variances
     (means, spread)
 }
 
-/// Holds every level, coarsest first and at least one, against the path tracer's means on the finest.
+/// Holds every level's reflected light (what is emitted is known and would only flatter the numbers), coarsest first and at least one, against the path tracer's means on the finest.
 ///
 /// The finest level's discretisation error is extrapolated from its difference to the level before, |Δ| / (2ᵖ − 1), with p the
 /// order that the matrix's own levels show where there are three; for no surface is it taken below the average.
@@ -59,10 +61,14 @@ pub fn compare(
     bundles: &Bundles,
     levels: &[LevelSolution],
     paths: &Estimate,
+    emission: &Block,
     significance: f64,
 ) -> Refinement {
     let areas: Vec<f64> = scene.surfaces().iter().map(|s| s.area()).collect();
-    let (truth, variance) = surface_means(scene, bundles, &paths.mean, Some(&paths.variance_of_mean));
+    let mut reflected = paths.mean.clone();
+    reflected.add_scaled(-1.0, emission);
+    let (truth, variance) = surface_means(scene, bundles, &reflected, Some(&paths.variance_of_mean));
+    let (emitted, _) = surface_means(scene, bundles, emission, None);
     let size = weigh(&truth, &areas, |v| v * v);
     let noise = (weigh(&variance, &areas, |v| v) / size).sqrt();
     let difference = |a: &Block, b: &Block| {
@@ -77,7 +83,7 @@ pub fn compare(
         .map(|level| RefinementLevel {
             patch_size: level.patch_size,
             n_bundles: level.n_bundles,
-            error: difference(&level.means, &truth),
+            error: difference(&level.reflected, &truth),
             noise,
         })
         .collect();
@@ -89,7 +95,7 @@ pub fn compare(
     let fitted = observed_order(&clear);
 
     // Extrapolate the finest level from the matrix's own differences.
-    let steps: Vec<f64> = levels.windows(2).map(|pair| difference(&pair[0].means, &pair[1].means)).collect();
+    let steps: Vec<f64> = levels.windows(2).map(|pair| difference(&pair[0].reflected, &pair[1].reflected)).collect();
     let own_order = match steps[..] {
         [.., coarse, fine] if fine > 0.0 => (coarse / fine).log2(),
         _ => ORDERS.0,
@@ -105,9 +111,9 @@ pub fn compare(
     let mut surfaces = Vec::new();
     for (s, surface) in scene.surfaces().iter().enumerate() {
         for (band, name) in scene.bands().iter().enumerate() {
-            let (matrix, path_tracer) = (finest.means.get(s, band), truth.get(s, band));
+            let (matrix, path_tracer) = (finest.reflected.get(s, band), truth.get(s, band));
             let standard_error = variance.get(s, band).sqrt();
-            let step = (matrix - before.means.get(s, band)).abs();
+            let step = (matrix - before.reflected.get(s, band)).abs();
             let discretisation_error = (step / shrink).max(finest_error * path_tracer.abs());
             // Two exact means may still differ by the rounding of their sums.
             let rounding = 1e-12 * path_tracer.abs();
@@ -115,8 +121,8 @@ pub fn compare(
             surfaces.push(SurfaceMean {
                 surface: surface.name.clone(),
                 band: name.clone(),
-                matrix,
-                path_tracer,
+                matrix: matrix + emitted.get(s, band),
+                path_tracer: path_tracer + emitted.get(s, band),
                 standard_error,
                 discretisation_error,
             });

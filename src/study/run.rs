@@ -87,12 +87,14 @@ pub fn run(
         for k in (1..settings.n_levels).rev() {
             let patch_size = settings.resolution.patch_size * (1u64 << k) as f64;
             let coarse = Bundles::new(scene, Resolution { patch_size, ..settings.resolution })?;
-            let system = assemble_watched(scene, &coarse, settings.exchange, progress)?;
-            let solution = solver::Cg { tolerance: settings.tolerance }.solve(system.equation(), &mut ())?;
-            levels.push(LevelSolution::new(scene, &coarse, &solution.radiance));
+            // Each level costs some sixteen times the one before.
+            let share = |done: f64| progress(done * 16f64.powi(1 - k as i32));
+            let coarse_system = assemble_watched(scene, &coarse, settings.exchange, &share)?;
+            let solution = solver::Cg { tolerance: settings.tolerance }.solve(coarse_system.equation(), &mut ())?;
+            levels.push(LevelSolution::new(scene, &coarse, &solution.radiance, coarse_system.emission()));
         }
-        levels.push(LevelSolution::new(scene, &bundles, &truth));
-        Ok(refinement::compare(scene, &bundles, &levels, &path_estimate, settings.significance))
+        levels.push(LevelSolution::new(scene, &bundles, &truth, system.emission()));
+        Ok(refinement::compare(scene, &bundles, &levels, &path_estimate, system.emission(), settings.significance))
     })?;
 
     let pictures = match Measurement::new(scene, &bundles, settings.gather) {
