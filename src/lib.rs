@@ -25,9 +25,43 @@
 //!
 //! (Arvo 1995 and Veach 1997 write K for our S and T for our K.)
 //!
-//! ## The rooms, in reading order
+//! ## The rooms, top to bottom
 //!
-//! Each room uses only rooms further down this list; `tests/tidy.rs` reads the sources and fails on an arrow that runs up.
+//! A room uses only rooms further down; `tests/tidy.rs` reads the sources and fails on an arrow that runs up.
+//!
+//! | room | what it is for |
+//! |---|---|
+//! | `cli` | arguments in, exit codes out; the only room that prints |
+//! | [`report`] | figures and pages |
+//! | [`study`] | experiments: what varies, what is held, what is recorded |
+//! | [`oracle`] | answers for whoever needs one that is not another renderer's |
+//! | [`compare`] | norms, z-scores, rates |
+//! | [`solver`] | deterministic answers, one file a method |
+//! | [`estimator`] | random answers: paths, walks on the matrix |
+//! | [`assembly`] | scene + basis → T, S, E, W |
+//! | [`basis`] | finite ray bundles: elements × bins of directions |
+//! | [`gallery`] | scenes with known answers, and their derivations |
+//! | [`scene`] | surfaces, emitters, camera; files |
+//! | [`scattering`], [`medium`] | how light turns, how it fades |
+//! | [`geometry`] | polygons and rays |
+//! | [`linalg`] | operators, blocks of vectors, factorizations |
+//! | [`image`], [`sampling`], [`stats`] | pixels, random numbers, hypothesis tests |
+//!
+//! ## The heart of it
+//!
+//! ```
+//! use etendue::assembly::{Exchange, assemble};
+//! use etendue::basis::{Bundles, Resolution};
+//! use etendue::gallery;
+//! use etendue::solver::{Cg, Solver};
+//!
+//! let scene = gallery::cornell_box();
+//! let bundles = Bundles::new(&scene, Resolution { patch_size: 1.0, n_directions: 1 })?;
+//! let system = assemble(&scene, &bundles, Exchange::default())?;
+//! let answer = Cg { tolerance: 1e-12 }.solve(system.equation(), &mut ())?;
+//! assert!(answer.report.true_residual <= 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![forbid(unsafe_code)]
 
 pub mod assembly;
@@ -49,3 +83,8 @@ pub mod scene;
 pub mod solver;
 pub mod stats;
 pub mod study;
+
+/// The README's example, kept true by running it.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;

@@ -36,7 +36,7 @@ impl Polygon {
     ///
     /// # Errors
     /// Fewer than three vertices, a coordinate that is not finite, zero area, a vertex off the plane by more than
-    /// [`PLANARITY_TOLERANCE`] of the diameter, or a reflex corner.
+    /// [`PLANARITY_TOLERANCE`](super::PLANARITY_TOLERANCE) of the diameter, or a reflex corner.
     pub fn new(vertices: Vec<Vec3>) -> Result<Self, PolygonError> {
         if vertices.len() < 3 {
             return Err(PolygonError::TooFewVertices { found: vertices.len() });

@@ -132,6 +132,7 @@ impl Dense {
                 out
             })
             .collect();
+        #[expect(clippy::needless_range_loop, reason = "c runs over three arrays")]
         for c in 0..C {
             for (r, y) in y.column_mut(first + c).iter_mut().enumerate() {
                 *y = results[r / ROWS_A_TASK][r % ROWS_A_TASK][c];

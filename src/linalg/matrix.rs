@@ -40,7 +40,7 @@ impl Matrix {
         Self::Sparse(Sparse::from_rows(n, &rows))
     }
 
-    /// Entry (r, c) ← entry · (d[r] d[c]): symmetric stays symmetric, bit for bit.
+    /// Entry (r, c) ← entry · (d_r d_c): symmetric stays symmetric, bit for bit.
     pub fn scale_symmetric(&mut self, d: &[f64]) {
         match self {
             Self::Dense(dense) => {

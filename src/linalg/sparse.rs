@@ -45,7 +45,7 @@ impl Sparse {
         (&self.0.indices()[range.clone()], &self.0.data()[range])
     }
 
-    /// Entry (r, c) ← entry · d[r] · d[c].
+    /// Entry (r, c) ← entry · d_r · d_c.
     pub(super) fn scale_symmetric(&mut self, d: &[f64]) {
         let starts = self.0.indptr().raw_storage().to_vec();
         let columns = self.0.indices().to_vec();

@@ -97,12 +97,9 @@ pub fn run(
         Ok(refinement::compare(scene, &bundles, &levels, &path_estimate, system.emission(), settings.significance))
     })?;
 
-    let pictures = match Measurement::new(scene, &bundles, settings.gather) {
-        Some(measurement) => {
-            Some(stages.time("gather", |progress| picture(&measurement, &system, &truth, settings.n_bounces, progress)))
-        }
-        None => None,
-    };
+    let pictures = Measurement::new(scene, &bundles, settings.gather).map(|measurement| {
+        stages.time("gather", |progress| picture(&measurement, &system, &truth, settings.n_bounces, progress))
+    });
 
     Ok(StudyOutcome {
         scene: scene.name().to_string(),
