@@ -16,8 +16,8 @@
 //! equation of L. The *collision* walk has v = E, u = 0. The *absorption* (last event) walk has v = 0, u = E / (1 − p); on bundles with
 //! pⱼ > 0.9, which end few walks or none, it would score rarely and hugely, or never, and scores v = E as the collision walk does.
 //!
-//! Variance: weights never exceed 1 and scores of one visit not 10 E, so |X| is at most 10 max E times the length of the walk.
-//! The tail of the length falls geometrically as soon as every bundle can reach one that absorbs (checked), so all moments exist.
+//! Variance: weights never exceed 1 and a score never 10 E, so X is at most 10 max E times the length of the walk. The tail of the
+//! length falls geometrically as soon as every bundle can reach one that absorbs or loses light (checked), so all moments exist.
 //!
 //! Cost: one random number, one alias slot and 2 × bands additions a step. A slot is 16 bytes, for every entry of G above zero.
 //! Source: Forsythe & Leibler 1950 (last event); Wasow 1952 (every visit).

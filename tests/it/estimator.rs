@@ -417,6 +417,19 @@ fn ranges_merge_to_the_whole() {
     });
 }
 
+/// Walks move many abreast; one after another they draw the same samples.
+#[test]
+fn walks_abreast_are_the_same_walks() {
+    let system = system(&open_room(), 0.5);
+    for walk in [MatrixWalk::collision(&system).unwrap(), MatrixWalk::absorption(&system).unwrap()] {
+        let nothing = Block::zeros(walk.n_bundles(), walk.n_bands());
+        let one_by_one = OnePerCentMore { honest: &walk, exact: &nothing };
+        let (abreast, single) = (estimate(&walk, 1500, SEED), estimate(&one_by_one, 1500, SEED));
+        assert!(relative_max(&abreast.mean, &single.mean) < MERGE_TOLERANCE);
+        assert!(relative_max(&abreast.variance_of_mean, &single.variance_of_mean) < MERGE_TOLERANCE);
+    }
+}
+
 #[test]
 fn parts_of_different_estimates_do_not_merge() {
     let shots = Scattershot { n: 10 };
