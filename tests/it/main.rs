@@ -1,3 +1,4 @@
 //! Integration tests, through the public interface, in one binary.
 
 mod estimator;
+mod gallery;
