@@ -16,21 +16,25 @@
 //! equation of L. The *collision* walk has v = E, u = 0. The *absorption* (last event) walk has v = 0, u = E / (1 − p); on bundles with
 //! pⱼ > 0.9, which end few walks or none, it would score rarely and hugely, or never, and scores v = E as the collision walk does.
 //!
-//! Variance: weights never exceed 1 and scores of one visit not 10 E, so |X| is at most 10 max E times the length of the walk.
-//! The tail of the length falls geometrically as soon as every bundle can reach one that absorbs (checked), so all moments exist.
+//! Variance: weights never exceed 1 and a score never 10 E, so X is at most 10 max E times the length of the walk. The tail of the
+//! length falls geometrically as soon as every bundle can reach one that absorbs or loses light (checked), so all moments exist.
 //!
 //! Cost: one random number, one alias slot and 2 × bands additions a step. A slot is 16 bytes, for every entry of G above zero.
 //! Source: Forsythe & Leibler 1950 (last event); Wasow 1952 (every visit).
 
-use super::throughput::Throughput;
+use super::bands::Bands;
 use super::{Estimator, EstimatorError, Score, Truth};
 use crate::assembly::System;
 use crate::linalg::LinearOperator;
-use crate::sampling::{AliasRows, Stream};
+use crate::sampling::{AliasRows, Stream, Streams};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Bundles that absorb less than a tenth of the walks score every visit.
 const LAST_EVENT_LIMIT: f64 = 0.9;
+
+/// Walks that one thread moves in turns: hides the time that memory takes to deliver a slot of a large matrix.
+const N_ABREAST: usize = 16;
 
 /// A bundle loses light to sinks where its row of G lacks more than this: what closure leaves open.
 const CLOSURE_TOLERANCE: f64 = 1e-12;
@@ -51,6 +55,17 @@ pub struct MatrixWalk {
     chain: Arc<Chain>,
     /// n × (1 + 3 bands), row by row: p, then a / p, v and u of every band.
     bundles: Vec<f64>,
+}
+
+/// A walk on its way.
+struct Walk {
+    bundle: usize,
+    is_inside: bool,
+    stream: Stream,
+    /// Chooses the next step.
+    uniform: f64,
+    weights: Bands,
+    totals: Bands,
 }
 
 /// What walks of either scoring share.
@@ -128,30 +143,76 @@ impl Estimator for MatrixWalk {
     }
 
     fn sample(&self, start: usize, stream: &mut Stream, score: &mut Score) {
-        let n_bands = self.chain.n_bands;
-        let totals = score.totals(start);
-        let mut weights = Throughput::ones(n_bands);
-        let mut bundle = start;
-        loop {
-            // Score the visit.
-            let row = &self.bundles[bundle * (1 + 3 * n_bands)..][..1 + 3 * n_bands];
-            let (survival, row) = (row[0], &row[1..]);
-            let (gain, row) = row.split_at(n_bands);
-            let (at_visit, at_end) = row.split_at(n_bands);
-            add(totals, &weights, at_visit);
+        let mut walk = Walk::new(start, stream.clone(), self.chain.n_bands);
+        while walk.is_inside && self.visit(&mut walk) {
+            self.step(&mut walk);
+        }
+        *stream = walk.stream;
+        score.totals(start).iter_mut().zip(walk.totals.iter()).for_each(|(total, scored)| *total += scored);
+    }
 
-            // End here with probability 1 − p.
-            let uniform = stream.uniform();
-            if uniform >= survival {
-                add(totals, &weights, at_end);
-                return;
+    fn samples(&self, start: usize, numbers: Range<u64>, streams: &Streams, score: &mut Score) {
+        let mut waiting =
+            numbers.map(|number| Walk::new(start, streams.stream(start as u32, number), self.chain.n_bands));
+        let mut walks: Vec<Walk> = waiting.by_ref().take(N_ABREAST).collect();
+        while !walks.is_empty() {
+            // Score every walk, and put a new one in the place of each that ends.
+            let mut k = 0;
+            while k < walks.len() {
+                if walks[k].is_inside && self.visit(&mut walks[k]) {
+                    k += 1;
+                    continue;
+                }
+                score.totals(start).copy_from_slice(&walks[k].totals);
+                score.end_sample();
+                match waiting.next() {
+                    Some(walk) => walks[k] = walk,
+                    None => drop(walks.swap_remove(k)),
+                }
             }
 
-            // Or step by G; below p, the number over p is uniform again.
-            let Some(next) = self.chain.steps.sample(bundle, uniform / survival) else { return };
-            weights.iter_mut().zip(gain).for_each(|(weight, gain)| *weight *= gain);
-            bundle = next;
+            // Move them all: nothing else here, so that memory delivers many slots at a time.
+            walks.iter_mut().for_each(|walk| self.step(walk));
         }
+    }
+}
+
+impl MatrixWalk {
+    /// Scores the bundle that a walk stands on; false where it is absorbed.
+    #[inline]
+    fn visit(&self, walk: &mut Walk) -> bool {
+        let n_bands = self.chain.n_bands;
+        let row = &self.bundles[walk.bundle * (1 + 3 * n_bands)..][..1 + 3 * n_bands];
+        let (survival, row) = (row[0], &row[1..]);
+        let (gain, row) = row.split_at(n_bands);
+        let (at_visit, at_end) = row.split_at(n_bands);
+        add(&mut walk.totals, &walk.weights, at_visit);
+
+        // Absorb it with probability 1 − p; below p, the number over p is uniform again.
+        let uniform = walk.stream.uniform();
+        if uniform >= survival {
+            add(&mut walk.totals, &walk.weights, at_end);
+            return false;
+        }
+        walk.uniform = uniform / survival;
+        walk.weights.iter_mut().zip(gain).for_each(|(weight, gain)| *weight *= gain);
+        true
+    }
+
+    /// Moves a walk by G, maybe out of the scene.
+    #[inline]
+    fn step(&self, walk: &mut Walk) {
+        match self.chain.steps.sample(walk.bundle, walk.uniform) {
+            Some(next) => walk.bundle = next,
+            None => walk.is_inside = false,
+        }
+    }
+}
+
+impl Walk {
+    fn new(start: usize, stream: Stream, n_bands: usize) -> Self {
+        let (weights, totals) = (Bands::all(1.0, n_bands), Bands::all(0.0, n_bands));
+        Self { bundle: start, is_inside: true, stream, uniform: 0.0, weights, totals }
     }
 }
 

@@ -17,8 +17,8 @@
 //! Cost: a closest-hit ray and a shadow ray a vertex. Visibility leaves out the plane that a ray starts on by identity; there is no epsilon.
 //! Source: Kajiya 1986; Veach 1997, §9.2 (balance heuristic), §10.4 (roulette).
 
+use super::bands::Bands;
 use super::emitters::Emitters;
-use super::throughput::Throughput;
 use super::{Estimator, EstimatorError, Score, Truth};
 use crate::basis::{Bundles, Patch};
 use crate::geometry::{Frame, Polygon, Ray, Tracer, Vec3};
@@ -143,7 +143,7 @@ impl Estimator for PathTracer<'_> {
         let surface = self.scene.surface_of(patch.facet);
         totals.iter_mut().enumerate().for_each(|(band, total)| *total += surface.emitted(patch.side, band));
         let Some(mut vertex) = self.leave(patch, stream) else { return };
-        let mut throughput = Throughput::ones(totals.len());
+        let mut throughput = Bands::all(1.0, totals.len());
         loop {
             self.add_direct(&vertex, &throughput, stream, totals);
 

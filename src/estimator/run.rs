@@ -56,16 +56,15 @@ pub fn estimate_watched(
         let n_chunks_here = chunks_a_wave.min(n_chunks - first_chunk) as usize;
         let wave: Vec<Vec<Moments>> = (0..n_chunks_here * n_starts)
             .into_par_iter()
-            .map_init(
-                || Score::new(n_bands),
-                |score, task| {
-                    let begin = samples.start + (first_chunk + (task / n_starts) as u64) * SAMPLES_A_TASK;
-                    let end = samples.end.min(begin.saturating_add(SAMPLES_A_TASK));
-                    let drawn = draw(estimator, &streams, task % n_starts, begin..end, score);
-                    progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / n_tasks as f64);
-                    drawn
-                },
-            )
+            .map(|task| {
+                let begin = samples.start + (first_chunk + (task / n_starts) as u64) * SAMPLES_A_TASK;
+                let end = samples.end.min(begin.saturating_add(SAMPLES_A_TASK));
+                let start = task % n_starts;
+                let mut score = Score::new(estimator.reach(start), n_bands);
+                estimator.samples(start, begin..end, &streams, &mut score);
+                progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / n_tasks as f64);
+                score.into_moments()
+            })
             .collect();
 
         // Merge them in order.
@@ -83,24 +82,4 @@ pub fn estimate_watched(
         estimate.variance_of_mean.set(k / n_bands, k % n_bands, moments.variance_of_mean());
     }
     estimate
-}
-
-/// The moments of some samples from one start, for each bundle in its reach and each band.
-fn draw(
-    estimator: &dyn Estimator,
-    streams: &Streams,
-    start: usize,
-    samples: Range<u64>,
-    score: &mut Score,
-) -> Vec<Moments> {
-    let reach = estimator.reach(start);
-    let n_samples = samples.end - samples.start;
-    let mut moments = vec![Moments::default(); reach.len() * estimator.n_bands()];
-    score.aim(reach);
-    for sample in samples {
-        estimator.sample(start, &mut streams.stream(start as u32, sample), score);
-        score.flush(&mut moments);
-    }
-    moments.iter_mut().for_each(|moments| moments.pad_with_zeros(n_samples));
-    moments
 }

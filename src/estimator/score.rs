@@ -1,9 +1,9 @@
-//! What one sample adds up to.
+//! What samples add up to.
 
 use crate::stats::Moments;
 use std::ops::Range;
 
-/// The running totals of one sample, for every bundle in its reach.
+/// The running totals of one sample, and the moments of the samples before it, for every bundle in reach of a start.
 ///
 /// Contributions of one sample are summed before they are squared: the variance is that of whole samples.
 #[derive(Clone, Debug)]
@@ -11,16 +11,28 @@ pub struct Score {
     /// The first bundle in reach.
     first: usize,
     n_bands: usize,
-    /// Totals, bundle by bundle, one a band.
+    /// Totals of the sample, bundle by bundle, one a band.
     totals: Vec<f64>,
+    /// Moments of the samples that have ended, likewise.
+    moments: Vec<Moments>,
+    n_samples: u64,
     is_touched: Vec<bool>,
-    /// The bundles in reach that this sample has scored, counted from `first`.
+    /// The bundles that the sample has scored, counted from `first`.
     touched: Vec<usize>,
 }
 
 impl Score {
-    pub(super) fn new(n_bands: usize) -> Self {
-        Self { first: 0, n_bands, totals: Vec::new(), is_touched: Vec::new(), touched: Vec::new() }
+    pub(super) fn new(reach: Range<usize>, n_bands: usize) -> Self {
+        let n_bundles = reach.len();
+        Self {
+            first: reach.start,
+            n_bands,
+            totals: vec![0.0; n_bundles * n_bands],
+            moments: vec![Moments::default(); n_bundles * n_bands],
+            n_samples: 0,
+            is_touched: vec![false; n_bundles],
+            touched: Vec::new(),
+        }
     }
 
     /// Adds to one bundle and band.
@@ -46,22 +58,23 @@ impl Score {
         &mut self.totals[local * self.n_bands..][..self.n_bands]
     }
 
-    /// Turns to other bundles, with all totals zero.
-    pub(super) fn aim(&mut self, reach: Range<usize>) {
-        self.first = reach.start;
-        self.totals.resize(reach.len() * self.n_bands, 0.0);
-        self.is_touched.resize(reach.len(), false);
-    }
-
-    /// Ends the sample: hands its totals on, and starts again from zero. Bundles that were not scored are not pushed.
-    pub(super) fn flush(&mut self, moments: &mut [Moments]) {
+    /// Ends one sample: its totals become numbers to average, and start again from zero.
+    #[inline]
+    pub fn end_sample(&mut self) {
+        self.n_samples += 1;
         for local in self.touched.drain(..) {
             self.is_touched[local] = false;
             let here = local * self.n_bands..(local + 1) * self.n_bands;
-            for (total, moments) in self.totals[here.clone()].iter_mut().zip(&mut moments[here]) {
+            for (total, moments) in self.totals[here.clone()].iter_mut().zip(&mut self.moments[here]) {
                 moments.push(*total);
                 *total = 0.0;
             }
         }
+    }
+
+    /// The moments of all samples that have ended, those counted as zero that did not score a bundle.
+    pub(super) fn into_moments(mut self) -> Vec<Moments> {
+        self.moments.iter_mut().for_each(|moments| moments.pad_with_zeros(self.n_samples));
+        self.moments
     }
 }

@@ -4,6 +4,7 @@
 #![allow(clippy::excessive_precision, clippy::approx_constant)]
 
 mod compare;
+mod estimator;
 mod format;
 mod gallery;
 mod image;
