@@ -23,7 +23,7 @@ impl Laws {
         let etendue = system.etendue();
         let (mut reciprocity, mut closure, mut positivity): (f64, f64, f64) = (0.0, 0.0, 0.0);
         let mut column = vec![0.0; n];
-        for i in 0..n {
+        for (i, mu) in etendue.iter().enumerate() {
             // The stored column against the stored row, not one of them read twice.
             system.exchange().column(0, i, &mut column);
             let mut sum = 0.0;
@@ -33,11 +33,11 @@ impl Laws {
                 if scale > 0.0 {
                     reciprocity = reciprocity.max((t - mirrored).abs() / scale);
                 }
-                positivity = positivity.max(-t / etendue[i]);
+                positivity = positivity.max(-t / mu);
                 sum += t;
             });
             let lost: f64 = system.sinks().row(i).sum();
-            closure = closure.max(((sum + lost) / etendue[i] - 1.0).abs());
+            closure = closure.max(((sum + lost) / mu - 1.0).abs());
         }
 
         let albedos = system.transport().scattering().values();

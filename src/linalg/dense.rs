@@ -133,9 +133,8 @@ impl Dense {
             })
             .collect();
         for c in 0..C {
-            for (r, y) in y.column_mut(first + c).iter_mut().enumerate() {
-                *y = results[r / ROWS_A_TASK][r % ROWS_A_TASK][c];
-            }
+            let rows = results.as_flattened().iter();
+            y.column_mut(first + c).iter_mut().zip(rows).for_each(|(y, row)| *y = row[c]);
         }
     }
 }
