@@ -1,6 +1,7 @@
 //! Which polygons lie in one plane.
 
 use super::{Polygon, Vec3};
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// A number for every polygon, equal where two lie in one plane (facing alike or opposite) to within the rounding of their
 /// coordinates. Cost O(n log n) unless many planes nearly coincide.
@@ -12,7 +13,7 @@ pub fn group_by_plane(polygons: &[&Polygon]) -> Vec<u32> {
     let generic = Vec3::new(0.6180339887498949, 0.7548776662466927, 0.8191725133961645);
     let mut keys: Vec<(f64, usize)> = Vec::with_capacity(2 * polygons.len());
     for (i, p) in polygons.iter().enumerate() {
-        let key = p.normal().dot(generic) + std::f64::consts::FRAC_1_SQRT_2 * p.normal().dot(p.centroid()) / scale;
+        let key = p.normal().dot(generic) + FRAC_1_SQRT_2 * p.normal().dot(p.centroid()) / scale;
         keys.push((key, i));
         keys.push((-key, i));
     }

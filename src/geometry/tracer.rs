@@ -116,7 +116,7 @@ impl Tracer {
         }
         let plane = start.map_or(u32::MAX, |id| self.planes[id]);
         let mut best: Option<Hit> = None;
-        let (box_ray, entry) = self.box_ray(ray, f64::INFINITY)?;
+        let BoxedRay { ray: box_ray, entry, speed } = self.box_ray(ray, f64::INFINITY)?;
         let probe = self.probe(ray);
         self.tree.ray_traverse(box_ray, &mut RayHit::none(), |_, k| {
             let shape = &self.shapes[k];
@@ -129,7 +129,7 @@ impl Tracer {
             if hit.t < nearest || best.is_none_or(|b| hit.polygon < b.polygon) {
                 best = Some(hit);
             }
-            round_up(hit.t - entry)
+            round_up((hit.t - entry) * speed)
         });
         best
     }
@@ -141,9 +141,9 @@ impl Tracer {
         }
         let ray = Ray { origin: from, direction: to - from };
         let planes = ends.map(|id| self.planes[id]);
-        let Some((box_ray, _)) = self.box_ray(&ray, 1.0) else { return false };
+        let Some(boxed) = self.box_ray(&ray, 1.0) else { return false };
         let probe = self.probe(&ray);
-        !self.tree.ray_traverse_miss(box_ray, |_, k| {
+        !self.tree.ray_traverse_miss(boxed.ray, |_, k| {
             let shape = &self.shapes[k];
             let blocks = !planes.contains(&shape.plane) && shape.meet(&probe, 1.0).is_some_and(|hit| hit.t < 1.0);
             if blocks { 0.0 } else { f32::INFINITY }
@@ -189,18 +189,33 @@ impl Tracer {
         self.planes[a] == self.planes[b]
     }
 
-    /// The ray in the coordinates of the boxes, moved up to the scene where it starts far outside: (ray, parameter of its start).
-    fn box_ray(&self, ray: &Ray, t_max: f64) -> Option<(BoxRay, f64)> {
+    /// The ray in the coordinates of the boxes, moved up to the scene where it starts far outside. Its direction has unit length there,
+    /// for obvhs cuts inverse directions off at 1/ε: of a short direction, that would bend the ray by more than a box's margin.
+    fn box_ray(&self, ray: &Ray, t_max: f64) -> Option<BoxedRay> {
         let origin = (ray.origin - self.centre) / self.radius;
-        let direction = ray.direction / self.radius;
-        let mut entry = 0.0;
+        let length = ray.direction.length();
+        let (direction, speed) = (ray.direction / length, length / self.radius);
+        let mut advance = 0.0;
         if origin.length_squared() > 4.0 {
-            entry = ((-origin.dot(direction) / direction.length_squared()) - 1.5 / direction.length()).max(0.0);
+            advance = (-origin.dot(direction) - 1.5).max(0.0);
         }
-        let start = (origin + entry * direction).as_vec3();
-        let t_max = if t_max.is_finite() { round_up(t_max - entry) } else { f32::INFINITY };
-        (t_max > 0.0).then(|| (BoxRay::new(start.into(), direction.as_vec3().into(), 0.0, t_max), entry))
+        let start = (origin + advance * direction).as_vec3();
+        let entry = advance / speed;
+        let t_max = if t_max.is_finite() { round_up((t_max - entry) * speed) } else { f32::INFINITY };
+        let reaches = t_max > 0.0 && direction.is_finite();
+        reaches.then(|| BoxedRay {
+            ray: BoxRay::new(start.into(), direction.as_vec3().into(), 0.0, t_max),
+            entry,
+            speed,
+        })
     }
+}
+
+/// A ray among the boxes: its parameter there is (t − entry) · speed.
+struct BoxedRay {
+    ray: BoxRay,
+    entry: f64,
+    speed: f64,
 }
 
 /// f32 at or above t, so that the boxes of equal hits are still looked at.

@@ -134,9 +134,8 @@ impl Dense {
             .collect();
         #[expect(clippy::needless_range_loop, reason = "c runs over three arrays")]
         for c in 0..C {
-            for (r, y) in y.column_mut(first + c).iter_mut().enumerate() {
-                *y = results[r / ROWS_A_TASK][r % ROWS_A_TASK][c];
-            }
+            let rows = results.as_flattened().iter();
+            y.column_mut(first + c).iter_mut().zip(rows).for_each(|(y, row)| *y = row[c]);
         }
     }
 }

@@ -13,6 +13,7 @@ mod lu;
 mod monitor;
 mod neumann;
 mod report;
+mod self_adjoint;
 mod southwell;
 
 pub use bracket::Bracket;

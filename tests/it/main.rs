@@ -4,13 +4,23 @@
 #![allow(clippy::excessive_precision, clippy::approx_constant, clippy::single_range_in_vec_init)]
 
 mod compare;
+mod equations;
 mod estimator;
+mod exchange;
+mod form_factors;
 mod format;
 mod gallery;
 mod image;
+mod laws;
 mod medium;
+mod patches;
+mod refinement;
 mod report;
 mod sampling;
 mod scattering;
+mod scenes;
+mod solvers;
 mod sphere;
 mod stats;
+mod threads;
+mod tracing;

@@ -14,6 +14,9 @@ use super::rules::{Rule, TANH_SINH, gauss_legendre};
 use crate::geometry::Vec3;
 use std::sync::LazyLock;
 
+/// Relative rounding of a logarithm's term, a few ulp.
+const ROUNDING: f64 = 1e-15;
+
 static GAUSS: LazyLock<[Rule; 2]> = LazyLock::new(|| [gauss_legendre(12), gauss_legendre(18)]);
 
 /// T of two convex polygons, each wholly in front of the other's plane, and an estimate of its error, both in m² sr.
@@ -38,7 +41,11 @@ pub fn exchange(a: &[Vec3], b: &[Vec3]) -> (f64, f64) {
         let tangent = (end - start) / length;
         let facing: Vec<Edge> =
             edges.iter().map(|e| Edge { weight: tangent.dot(e.tangent), ..*e }).filter(|e| e.weight != 0.0).collect();
-        let inner = |x: Vec3| facing.iter().map(|edge| edge.weight * edge.log_potential(x)).sum::<f64>();
+        // The inner integral, and the size of the terms that cancel in it.
+        let inner = |x: Vec3| {
+            let terms = facing.iter().map(|edge| edge.weight * edge.log_potential(x));
+            terms.fold((0.0, 0.0), |(sum, size): (f64, f64), term| (sum + term, size + term.abs()))
+        };
 
         // Cut the edge where it comes closest to the other contour.
         let mut cuts = vec![0.0, 1.0];
@@ -51,26 +58,31 @@ pub fn exchange(a: &[Vec3], b: &[Vec3]) -> (f64, f64) {
             let (from, piece) = (start + pair[0] * length * tangent, (pair[1] - pair[0]) * length);
             let to = start + pair[1] * length * tangent;
             let clearance = facing.iter().map(|e| e.distance_to(from, to)).fold(f64::INFINITY, f64::min);
-            let (fine, coarse) = if clearance > piece {
-                let gauss = |rule: &Rule| -> f64 {
-                    rule.nodes.iter().zip(&rule.weights).map(|(s, w)| w * inner(from + s * piece * tangent)).sum()
-                };
-                (gauss(&GAUSS[1]), gauss(&GAUSS[0]))
+            let (mut fine, mut coarse, mut size) = (0.0, 0.0, 0.0);
+            if clearance > piece {
+                for (s, w) in GAUSS[1].nodes.iter().zip(&GAUSS[1].weights) {
+                    let (value, terms) = inner(from + s * piece * tangent);
+                    fine += w * value;
+                    size += w * terms;
+                }
+                let coarser = GAUSS[0].nodes.iter().zip(&GAUSS[0].weights);
+                coarse = coarser.map(|(s, w)| w * inner(from + s * piece * tangent).0).sum();
             } else {
                 // Step from the nearer end, so that nodes crowd an end without rounding onto it.
-                let (mut fine, mut coarse) = (0.0, 0.0);
                 for ((low, high, weight), even) in TANH_SINH.fine.iter().zip(&TANH_SINH.coarse_is_even) {
                     let x = if low < high { from + low * piece * tangent } else { to - high * piece * tangent };
-                    let value = weight * inner(x);
-                    fine += value;
-                    coarse += if *even { 2.0 * value } else { 0.0 };
+                    let (value, terms) = inner(x);
+                    fine += weight * value;
+                    size += weight * terms;
+                    coarse += if *even { 2.0 * weight * value } else { 0.0 };
                 }
-                (fine, coarse)
-            };
+            }
             sum += piece * fine;
-            // Doubling the nodes of either rule squares the error; keep some 8 ulp for rounding.
+            // Doubling the nodes squares the relative error, but for a power of 3/2 where another edge passes close by an end. Keep an
+            // ulp or so of every term for rounding.
             let change = (fine - coarse).abs();
-            error += piece * (change * change.min(1.0) + 2e-15 * fine.abs());
+            let left = if change < fine.abs() { change * (change / fine.abs()).sqrt() } else { change };
+            error += piece * (left + ROUNDING * size);
         }
     }
     ((0.5 * sum).max(0.0) * scale * scale, 0.5 * error * scale * scale)

@@ -1,0 +1,29 @@
+//! Is G self-adjoint in the étendue inner product, as the methods that rest on it need?
+
+use super::SolveError;
+use crate::linalg::{Block, SelfAdjoint};
+
+/// |⟨x, G y⟩ − ⟨G x, y⟩| relative to ‖x‖ ‖G y‖: rounding leaves some n^½ ulp, a wrong μ or a lost symmetry leaves far more.
+const SELF_ADJOINT: f64 = 1e-10;
+
+/// Probes ⟨x, G y⟩ = ⟨G x, y⟩ with two vectors without structure. Two products.
+pub(super) fn check_self_adjoint(method: &'static str, form: SelfAdjoint<'_>) -> Result<(), SolveError> {
+    let n = form.etendue.len();
+    let wave = |frequency: f64| Block::from_fn(n, 1, |i, _| (frequency * (i as f64 + 1.0)).sin());
+    let (x, y) = (wave(1.618_033_988_749_895), wave(2.414_213_562_373_095));
+    let (mut gx, mut gy) = (Block::zeros(n, 1), Block::zeros(n, 1));
+    form.propagation.apply(&x, &mut gx);
+    form.propagation.apply(&y, &mut gy);
+    let product = |a: &Block, b: &Block| inner(form.etendue, a.column(0), b.column(0));
+    let scale = (product(&x, &x) * product(&gy, &gy)).sqrt() + (product(&gx, &gx) * product(&y, &y)).sqrt();
+    let violation = (product(&x, &gy) - product(&gx, &y)).abs() / scale.max(f64::MIN_POSITIVE);
+    if violation > SELF_ADJOINT {
+        return Err(SolveError::NotSelfAdjoint { method, violation, allowed: SELF_ADJOINT });
+    }
+    Ok(())
+}
+
+/// ⟨a, b⟩ = Σ μᵢ aᵢ bᵢ.
+pub(super) fn inner(etendue: &[f64], a: &[f64], b: &[f64]) -> f64 {
+    etendue.iter().zip(a).zip(b).map(|((mu, a), b)| mu * a * b).sum()
+}
