@@ -3,7 +3,8 @@
 use rand_philox::splitmix64;
 
 /// The generalised golden ratios: the positive roots of x^(D+1) = x + 1 for D = 1 … 4.
-const RATIOS: [f64; 4] = [1.618_033_988_749_895, 1.324_717_957_244_746, 1.220_744_084_605_759_5, 1.167_303_978_261_418_7];
+const RATIOS: [f64; 4] =
+    [1.618_033_988_749_895, 1.324_717_957_244_746, 1.220_744_084_605_759_5, 1.167_303_978_261_418_7];
 
 /// A D-dimensional additive sequence with the generalised golden ratio (Roberts 2018), shifted at random by a key: a randomised
 /// quasi-Monte Carlo rule that needs no state. D ≤ 4.

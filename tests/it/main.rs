@@ -1,5 +1,6 @@
 //! Integration tests, through the public interface, in one binary; a module a subject.
 
+mod cli;
 mod compare;
 mod format;
 mod gallery;
