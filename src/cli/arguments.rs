@@ -11,15 +11,15 @@ pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
 
-    /// One JSON object on standard output, everything else on standard error
+    /// Print one JSON object on standard output; everything else goes to standard error
     #[arg(long, global = true)]
     pub json: bool,
 
     /// Threads to use; results do not depend on it [default: all cores]
-    #[arg(long, global = true, value_name = "N", value_parser = threads)]
+    #[arg(long, global = true, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
 
-    /// Say more on standard error; twice for everything
+    /// Say on standard error how long each stage took; twice: iterations and starting stages too
     #[arg(short, long, global = true, action = clap::ArgAction::Count)]
     pub verbose: u8,
 
@@ -30,11 +30,24 @@ pub struct Arguments {
 
 const EXIT_CODES: &str = "Exit codes: 0 ok, 4 input, 5 refused for memory, 6 not converged, 64 usage, 70 internal";
 
+const SOLVE_EXAMPLES: &str = "\
+Examples:
+  etendue solve cornell-box                         a table of means by surface
+  etendue solve cornell-box --json -q | jq .laws    one JSON object, and nothing else
+  etendue solve room.xml -D albedo=0.5 -o room.json a scene file, one of its parameters set";
+
+const STUDY_EXAMPLES: &str = "\
+Examples:
+  etendue study cornell-box                         writes out/cornell-box/report.html and its files
+  etendue study room.xml --patch-size 0.1 -o room   a scene file, cut as finely as you say";
+
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Solve a scene by every method, estimate it by every estimator, and write a report
+    #[command(after_help = STUDY_EXAMPLES)]
     Study(Study),
-    /// Solve a scene and print its light field
+    /// Solve a scene by one method and print its light field
+    #[command(after_help = SOLVE_EXAMPLES)]
     Solve(Solve),
     /// List the built-in scenes
     Gallery,
@@ -43,23 +56,23 @@ pub enum Command {
 /// Which scene, and how finely it is cut.
 #[derive(Debug, Args)]
 pub struct SceneArguments {
-    /// Name of a gallery scene, or path of a Mitsuba 3 XML file
+    /// Name of a gallery scene (`etendue gallery` lists them), or path of a Mitsuba 3 XML file
     pub scene: String,
 
-    /// Set a parameter of a scene file
+    /// Set a parameter of a scene file, a `$name` in it; may be given several times
     #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = definition)]
     pub definitions: Vec<(String, String)>,
 
-    /// Longest edge of a patch, metres [default: the scene's preset]
-    #[arg(long, value_name = "LENGTH", value_parser = positive)]
+    /// Longest edge of a patch [default: the scene's preset]
+    #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
     pub patch_size: Option<f64>,
 
-    /// Memory that matrices may take, e.g. 8GiB
-    #[arg(long, value_name = "BYTES", default_value = "8GiB")]
+    /// Memory that a run may take: what would take more is refused before it starts
+    #[arg(long, value_name = "SIZE", default_value = "8GiB", allow_negative_numbers = true)]
     pub memory: Bytes,
 
-    /// Seed of every random stream
-    #[arg(long, default_value_t = 1)]
+    /// Seed of every random stream; equal seeds give equal numbers
+    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true)]
     pub seed: u64,
 }
 
@@ -68,20 +81,20 @@ pub struct Study {
     #[command(flatten)]
     pub scene: SceneArguments,
 
-    /// Folder to write [default: out/SCENE]
+    /// Folder to write, whole or not at all; an older report there is replaced [default: out/SCENE]
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
 
     /// Stop iterative solvers at this relative residual
-    #[arg(long, default_value_t = 1e-12, value_parser = positive)]
+    #[arg(long, value_name = "RESIDUAL", default_value = "1e-12", value_parser = positive, allow_negative_numbers = true)]
     pub tolerance: f64,
 
     /// Most samples a bundle for the walks on the matrix
-    #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u64).range(4..))]
+    #[arg(long, value_name = "N", default_value_t = 4096, value_parser = samples, allow_negative_numbers = true)]
     pub walk_samples: u64,
 
     /// Most samples a bundle for the path tracer
-    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u64).range(4..))]
+    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = samples, allow_negative_numbers = true)]
     pub path_samples: u64,
 }
 
@@ -90,20 +103,20 @@ pub struct Solve {
     #[command(flatten)]
     pub scene: SceneArguments,
 
-    /// File to write the JSON object to, instead of standard output
+    /// Write the JSON object to this file too, whole or not at all
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// Method
+    /// Method: lu, cholesky and lu-nalgebra are direct, the others iterate
     #[arg(long, default_value = "cg", value_parser = clap::builder::PossibleValuesParser::new(solver_names()))]
     pub solver: String,
 
     /// Stop iterative solvers at this relative residual
-    #[arg(long, default_value_t = 1e-12, value_parser = positive)]
+    #[arg(long, value_name = "RESIDUAL", default_value = "1e-12", value_parser = positive, allow_negative_numbers = true)]
     pub tolerance: f64,
 
     /// End iterative solvers after this many products with K, converged or not
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = products, allow_negative_numbers = true)]
     pub max_products: Option<u64>,
 }
 
@@ -114,22 +127,32 @@ fn solver_names() -> Vec<&'static str> {
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        Ok(value) => Err(format!("{value} is not finite and above zero")),
-        Err(error) => Err(error.to_string()),
+        _ => Err("expected a finite number above zero, such as 0.1 or 1e-6".to_string()),
     }
 }
 
 fn threads(text: &str) -> Result<usize, String> {
-    match text.parse::<usize>() {
-        Ok(n @ 1..=1024) => Ok(n),
-        Ok(n) => Err(format!("{n} is not between 1 and 1024")),
-        Err(error) => Err(error.to_string()),
+    whole(text, 1, 1024).map(|n| n as usize)
+}
+
+fn samples(text: &str) -> Result<u64, String> {
+    whole(text, 4, 1 << 40)
+}
+
+fn products(text: &str) -> Result<u64, String> {
+    whole(text, 1, 1 << 40)
+}
+
+fn whole(text: &str, least: u64, most: u64) -> Result<u64, String> {
+    match text.parse::<u64>() {
+        Ok(n) if (least..=most).contains(&n) => Ok(n),
+        _ => Err(format!("expected a whole number from {least} to {most}")),
     }
 }
 
 fn definition(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((name, value)) if !name.is_empty() => Ok((name.to_string(), value.to_string())),
-        _ => Err("must have the form NAME=VALUE".to_string()),
+        _ => Err("expected NAME=VALUE, such as albedo=0.5".to_string()),
     }
 }

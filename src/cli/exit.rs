@@ -7,6 +7,7 @@ use crate::estimator::EstimatorError;
 use crate::report::ReportError;
 use crate::solver::SolveError;
 use crate::study::StudyError;
+use std::error::Error;
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
@@ -64,8 +65,31 @@ macro_rules! exits_with {
     };
 }
 
-exits_with!(Exit::Input, BasisError, AssemblyError, EstimatorError, ReportError, crate::scene::SceneError);
+exits_with!(Exit::Input, BasisError, AssemblyError, EstimatorError);
 exits_with!(Exit::NotConverged, SolveError);
+
+impl From<ReportError> for Failure {
+    fn from(error: ReportError) -> Self {
+        let hint = match error {
+            ReportError::NotAFolder { .. } | ReportError::NotAReport { .. } => {
+                "\n  = choose another folder with -o, or move what is there out of the way"
+            }
+            _ => "",
+        };
+        Self::new(Exit::Input, with_sources(&error) + hint)
+    }
+}
+
+/// What an error says, and what its causes say.
+fn with_sources(error: &dyn Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        text += &format!(": {error}");
+        cause = error.source();
+    }
+    text
+}
 
 impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Self {

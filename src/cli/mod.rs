@@ -6,9 +6,12 @@ mod gallery;
 mod memory;
 mod output;
 mod progress;
+mod provenance;
+mod record;
 mod scene;
 mod solve;
 mod study;
+mod table;
 
 use arguments::{Arguments, Command};
 use clap::Parser;

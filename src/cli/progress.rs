@@ -8,11 +8,20 @@ use std::io::IsTerminal;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-/// One bar a stage; a line a stage where `--verbose` asks for it.
+/// One bar a stage; lines beside it where `--verbose` asks for them.
 pub struct Bars {
     visible: bool,
-    lines: bool,
-    current: Mutex<Option<(String, ProgressBar, Instant)>>,
+    verbosity: u8,
+    current: Mutex<Option<Stage>>,
+}
+
+/// The stage at work.
+struct Stage {
+    name: String,
+    start: Instant,
+    /// None off the terminal, and while nothing is left to do.
+    bar: Option<ProgressBar>,
+    finished: Option<Duration>,
 }
 
 /// Steps of a bar.
@@ -21,37 +30,65 @@ const STEPS: u64 = 1000;
 impl Bars {
     pub fn new(arguments: &Arguments) -> Self {
         let visible = !arguments.quiet && std::io::stderr().is_terminal();
-        Self { visible, lines: arguments.verbose > 0, current: Mutex::new(None) }
+        Self { visible, verbosity: arguments.verbose, current: Mutex::new(None) }
     }
 
-    fn bar(&self, stage: &str) -> ProgressBar {
-        let target = if self.visible { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-        let bar = ProgressBar::with_draw_target(Some(STEPS), target);
-        let template = "{prefix:>16} {bar:32.cyan/black.bright} {percent:>3} %  {elapsed} of about {duration}";
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style.progress_chars("━━─"));
+    fn begin(&self, name: &str) -> Stage {
+        if self.verbosity > 1 {
+            output::error(&format!("{name:>16}  …"));
         }
-        bar.set_prefix(stage.to_string());
-        bar.enable_steady_tick(Duration::from_millis(250));
-        bar
+        Stage { name: name.to_string(), start: Instant::now(), bar: None, finished: None }
+    }
+
+    fn end(&self, stage: Stage) {
+        if let Some(bar) = &stage.bar {
+            bar.finish_and_clear();
+        }
+        if let (Some(took), true) = (stage.finished, self.verbosity > 0) {
+            output::error(&format!("{:>16}  {:.2} s", stage.name, took.as_secs_f64()));
+        }
     }
 }
 
+fn bar(stage: &str) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::stderr());
+    let template = "{prefix:>16} {bar:32.cyan/black.bright} {percent:>3} %  {elapsed} of about {duration}";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style.progress_chars("━━─"));
+    }
+    bar.set_prefix(stage.to_string());
+    bar.enable_steady_tick(Duration::from_millis(250));
+    bar
+}
+
 impl Watch for Bars {
-    fn progress(&self, stage: &str, done: f64) {
+    fn progress(&self, name: &str, done: f64) {
         let Ok(mut current) = self.current.lock() else { return };
-        let changed = current.as_ref().is_none_or(|(name, ..)| name != stage);
-        if changed {
-            *current = Some((stage.to_string(), self.bar(stage), Instant::now()));
-        }
-        let Some((_, bar, start)) = current.as_ref() else { return };
-        bar.set_position((done * STEPS as f64) as u64);
-        if done >= 1.0 {
-            bar.finish_and_clear();
-            if self.lines && !changed {
-                output::error(&format!("{stage:>16}  {:.2} s", start.elapsed().as_secs_f64()));
+
+        // A new name ends the stage before; one stage may reach its end several times, once a part.
+        if current.as_ref().is_none_or(|stage| stage.name != name) {
+            if let Some(before) = current.take() {
+                self.end(before);
             }
-            *current = None;
+            *current = Some(self.begin(name));
+        }
+        let Some(stage) = current.as_mut() else { return };
+        if done >= 1.0 {
+            stage.finished = Some(stage.start.elapsed());
+            if let Some(bar) = stage.bar.take() {
+                bar.finish_and_clear();
+            }
+        } else if self.visible {
+            stage.bar.get_or_insert_with(|| bar(name)).set_position((done * STEPS as f64) as u64);
+        }
+    }
+}
+
+impl Drop for Bars {
+    fn drop(&mut self) {
+        let last = self.current.lock().ok().and_then(|mut current| current.take());
+        if let Some(last) = last {
+            self.end(last);
         }
     }
 }

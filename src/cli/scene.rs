@@ -2,10 +2,12 @@
 
 use super::arguments::SceneArguments;
 use super::exit::{Exit, Failure};
-use super::memory::{self, Bytes};
-use crate::basis::{Bundles, Resolution};
+use super::memory::{self, Demand};
+use super::output;
+use crate::basis::Resolution;
 use crate::gallery;
 use crate::scene::Scene;
+use crate::study::tessellations;
 use std::path::Path;
 
 /// A preset for files, which have none: about this many patches.
@@ -15,18 +17,32 @@ const PRESET_PATCHES: f64 = 1500.0;
 pub struct Chosen {
     pub scene: Scene,
     pub resolution: Resolution,
-    pub n_bundles: usize,
-    /// True if the patch size is a preset and not the user's.
-    pub is_preset: bool,
+    pub demand: Demand,
+    is_preset: bool,
 }
 
-/// Finds the scene by gallery name or path, chooses the resolution, and checks that its matrices fit into memory.
-pub fn choose(arguments: &SceneArguments, bytes_needed: impl Fn(usize) -> u64) -> Result<Chosen, Failure> {
+/// Finds the scene by gallery name or path, chooses the resolution, and checks that the run will fit into memory.
+pub fn choose(arguments: &SceneArguments, bytes_needed: impl Fn(&Scene, usize) -> u64) -> Result<Chosen, Failure> {
     let (scene, preset) = find(arguments)?;
     let resolution = Resolution { patch_size: arguments.patch_size.unwrap_or(preset), n_directions: 1 };
-    let n_bundles = Bundles::count(&scene, resolution)?;
-    memory::check(Bytes(bytes_needed(n_bundles)), arguments.memory, n_bundles, resolution.patch_size)?;
-    Ok(Chosen { scene, resolution, n_bundles, is_preset: arguments.patch_size.is_none() })
+    let demand = memory::check(&scene, resolution, arguments.memory, |n| bytes_needed(&scene, n))?;
+    Ok(Chosen { scene, resolution, demand, is_preset: arguments.patch_size.is_none() })
+}
+
+impl Chosen {
+    /// Says on standard error what will be computed, and which of its numbers are presets.
+    pub fn announce(&self) {
+        let Self { scene, resolution, demand, is_preset } = self;
+        let preset = if *is_preset { " (preset; --patch-size chooses another)" } else { "" };
+        output::error(&format!(
+            "{}: {} bundles at patch size {}{preset}, at most {} of memory",
+            scene.name(),
+            demand.n_bundles,
+            resolution.patch_size,
+            demand.bytes
+        ));
+        tessellations(scene).iter().for_each(|sentence| output::error(&format!("note: {sentence}")));
+    }
 }
 
 fn find(arguments: &SceneArguments) -> Result<(Scene, f64), Failure> {
@@ -46,7 +62,8 @@ fn find(arguments: &SceneArguments) -> Result<(Scene, f64), Failure> {
         return Err(Failure::new(
             Exit::Input,
             format!(
-                "there is no gallery scene '{name}', and no file of that name{}\n  = `etendue gallery` lists the scenes",
+                "there is no gallery scene '{name}', and no file of that name{}\n  \
+                 = `etendue gallery` lists the scenes; a scene file is a Mitsuba 3 scene, NAME.xml",
                 suggestion.unwrap_or_default()
             ),
         ));
@@ -54,5 +71,7 @@ fn find(arguments: &SceneArguments) -> Result<(Scene, f64), Failure> {
     let scene = crate::scene::format::read(path, &arguments.definitions)
         .map_err(|error| Failure::new(Exit::Input, error.to_string()))?;
     let area: f64 = scene.surfaces().iter().map(|surface| surface.area()).sum();
-    Ok((scene, (area / PRESET_PATCHES).sqrt()))
+    let patch_size = format!("{:.1e}", (area / PRESET_PATCHES).sqrt()).parse();
+    let patch_size = patch_size.map_err(|_| Failure::new(Exit::Internal, "the scene's area is no number"))?;
+    Ok((scene, patch_size))
 }

@@ -4,41 +4,37 @@ use super::arguments::{Arguments, Study};
 use super::exit::{Exit, Failure};
 use super::output;
 use super::progress::Bars;
-use super::scene::{Chosen, choose};
-use crate::assembly::{Exchange, Gather, System};
-use crate::estimator::MatrixWalk;
-use crate::study::{Provenance, StudyOutcome, StudySettings, tessellations};
+use super::provenance::provenance;
+use super::scene::choose;
+use crate::assembly::{Exchange, Gather};
+use crate::study::{StudyOutcome, StudySettings};
 use crate::{report, study};
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Family-wise significance of the comparisons.
 const SIGNIFICANCE: f64 = 1e-6;
 
+/// Bounces shown one by one.
+const N_BOUNCES: usize = 6;
+
 pub fn run(arguments: &Arguments, study: &Study, command: Vec<String>) -> Result<(), Failure> {
-    // A study holds the matrix, its factors, its tables for walks, and a second matrix for comparison.
-    let needed = |n: usize| {
-        let square = (n as u64).saturating_mul(n as u64);
-        System::memory_estimate(n)
-            .saturating_add(square.saturating_mul(24))
-            .saturating_add(MatrixWalk::memory_estimate(n))
-    };
-    let Chosen { scene, resolution, n_bundles, is_preset } = choose(&study.scene, needed)?;
+    let chosen = choose(&study.scene, |scene, n| study::memory_estimate(scene, n, N_BOUNCES))?;
+    let scene = &chosen.scene;
     let folder = study.output.clone().unwrap_or_else(|| PathBuf::from("out").join(folder_name(scene.name())));
+    output::check_folder(&folder)?;
     report::check_folder(&folder)?;
     if !arguments.quiet {
-        let preset = if is_preset { " (preset)" } else { "" };
+        chosen.announce();
         output::error(&format!(
-            "{}: {n_bundles} bundles at patch size {}{preset}",
-            scene.name(),
-            resolution.patch_size
+            "seed {}, tolerance {:e}, up to {} walks and {} paths a bundle (--seed, --tolerance, --walk-samples, \
+             --path-samples)",
+            study.scene.seed, study.tolerance, study.walk_samples, study.path_samples
         ));
-        tessellations(&scene).iter().for_each(|sentence| output::error(&format!("note: {sentence}")));
     }
 
     let seed = study.scene.seed;
     let settings = StudySettings {
-        resolution,
+        resolution: chosen.resolution,
         n_levels: 3,
         tolerance: study.tolerance,
         exchange: Exchange { seed, ..Exchange::default() },
@@ -47,20 +43,12 @@ pub fn run(arguments: &Arguments, study: &Study, command: Vec<String>) -> Result
         significance: SIGNIFICANCE,
         seed,
         gather: Gather { samples: 16, rays: 16, seed },
-        n_bounces: 6,
+        n_bounces: N_BOUNCES,
     };
-    let provenance = Provenance {
-        version: env!("CARGO_PKG_VERSION").to_string(),
-        command,
-        scene: scene.name().to_string(),
-        scene_hash: scene.hash(),
-        patch_size: resolution.patch_size,
-        n_directions: resolution.n_directions,
-        seed,
-        settings: describe(&settings),
-    };
+    let provenance = provenance(&chosen, command, &settings.exchange, describe(&settings));
     let bars = Bars::new(arguments);
-    let outcome = study::run(&scene, &settings, provenance, &bars)?;
+    let outcome = study::run(scene, &settings, provenance, &bars)?;
+    drop(bars);
 
     // Write the folder whole, then say what is in it.
     let artifacts = report::render(&outcome)?;
@@ -83,23 +71,16 @@ fn folder_name(scene: &str) -> String {
     if name.is_empty() { "scene".to_string() } else { name.to_string() }
 }
 
-fn describe(settings: &StudySettings) -> BTreeMap<String, String> {
-    let StudySettings { exchange, gather, .. } = settings;
-    BTreeMap::from(
-        [
-            ("solver tolerance", format!("{:e}", settings.tolerance)),
-            ("quadrature tolerance", format!("{:e}", exchange.tolerance)),
-            ("visibility rays a pair", exchange.visibility_rays.to_string()),
-            ("sink rays a patch", exchange.sink_rays.to_string()),
-            ("walk samples a bundle", settings.walk_samples.to_string()),
-            ("path samples a bundle", settings.path_samples.to_string()),
-            ("significance", format!("{:e}", settings.significance)),
-            ("camera rays a pixel", gather.samples.to_string()),
-            ("gather rays a camera ray", gather.rays.to_string()),
-            ("refinement levels", settings.n_levels.to_string()),
-        ]
-        .map(|(name, value)| (name.to_string(), value)),
-    )
+fn describe(settings: &StudySettings) -> [(&'static str, String); 7] {
+    [
+        ("solver_tolerance", format!("{:e}", settings.tolerance)),
+        ("walk_samples_a_bundle", settings.walk_samples.to_string()),
+        ("path_samples_a_bundle", settings.path_samples.to_string()),
+        ("significance", format!("{:e}", settings.significance)),
+        ("camera_rays_a_pixel", settings.gather.samples.to_string()),
+        ("gather_rays_a_camera_ray", settings.gather.rays.to_string()),
+        ("refinement_levels", settings.n_levels.to_string()),
+    ]
 }
 
 /// What a person wants to know first.

@@ -1,6 +1,7 @@
 //! Experiments: what varies, what is held, what is recorded.
 
 mod error;
+mod memory;
 mod outcome;
 mod provenance;
 mod refinement;
@@ -8,6 +9,7 @@ mod run;
 mod watch;
 
 pub use error::StudyError;
+pub use memory::memory_estimate;
 pub use outcome::{
     EstimatorRun, ExchangeSummary, HistoryPoint, LawsMeasured, Pictures, Refinement, RefinementLevel, SamplePoint,
     SolverRun, StudyOutcome, SurfaceMean, Truncation,

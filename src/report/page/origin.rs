@@ -34,7 +34,8 @@ pub fn provenance(outcome: &StudyOutcome) -> String {
         ("seed", source.seed.to_string()),
         ("bands", outcome.bands.join(", ")),
     ];
-    facts.extend(source.settings.iter().map(|(name, value)| (name.as_str(), value.clone())));
+    let settings: Vec<(String, &String)> = source.settings.iter().map(|(k, v)| (k.replace('_', " "), v)).collect();
+    facts.extend(settings.iter().map(|(name, value)| (name.as_str(), value.to_string())));
     section("provenance", "Provenance", "Everything needed to get the same numbers again.", &definitions(&facts))
 }
 

@@ -1,0 +1,145 @@
+//! `etendue.solve/1`: a solved light field as one JSON object.
+
+use crate::assembly::System;
+use crate::basis::Bundles;
+use crate::linalg::Block;
+use crate::scene::{Scene, Side};
+use crate::solver::{Solution, Stop};
+use crate::study::{Provenance, tessellations};
+use serde::Serialize;
+
+/// What `solve --json` prints. Shapes and units are those of the crate's front page; lengths in metres.
+#[derive(Serialize)]
+pub struct Record<'a> {
+    schema: &'static str,
+    scene: &'a str,
+    n_bundles: usize,
+    n_bands: usize,
+    /// Names of the bands, in the order of every array that has one number a band.
+    bands: &'a [String],
+    /// In the order of the unknowns.
+    bundles: Vec<BundleRecord<'a>>,
+    laws: LawsRecord,
+    report: ReportRecord,
+    /// What stands for what: tessellated shapes.
+    notes: Vec<String>,
+    provenance: Provenance,
+}
+
+#[derive(Serialize)]
+struct BundleRecord<'a> {
+    element: usize,
+    surface: &'a str,
+    /// "front" or "back".
+    side: &'static str,
+    centre: [f64; 3],
+    normal: [f64; 3],
+    area: f64,
+    bin: usize,
+    /// m² sr.
+    etendue: f64,
+    /// W m⁻² sr⁻¹, as is the radiance.
+    emission: Vec<f64>,
+    radiance: Vec<f64>,
+    /// W m⁻².
+    irradiance: Vec<f64>,
+}
+
+#[derive(Serialize)]
+struct LawsRecord {
+    // Worst relative violation of each, as measured.
+    reciprocity: f64,
+    closure: f64,
+    positivity: f64,
+    conservation: f64,
+}
+
+#[derive(Serialize)]
+struct ReportRecord {
+    solver: &'static str,
+    stop: String,
+    n_iterations: usize,
+    n_applies: usize,
+    n_adjoint_applies: usize,
+    products: f64,
+    true_residual: f64,
+    /// Bound on ‖L − (I − K)⁻¹E‖∞ / ‖L‖∞; null where absorption is too small for one.
+    error_bound: Option<f64>,
+    seconds: f64,
+}
+
+/// The record of a solve.
+pub fn record<'a>(
+    scene: &'a Scene,
+    bundles: &Bundles,
+    system: &System,
+    solution: &Solution,
+    seconds: f64,
+    provenance: Provenance,
+) -> Record<'a> {
+    let irradiance = system.irradiance(&solution.radiance);
+    let report = &solution.report;
+    let laws = system.laws();
+    Record {
+        schema: "etendue.solve/1",
+        scene: scene.name(),
+        n_bundles: bundles.n_bundles(),
+        n_bands: scene.n_bands(),
+        bands: scene.bands(),
+        bundles: (0..bundles.n_bundles())
+            .filter_map(|i| bundle(scene, bundles, system, &solution.radiance, &irradiance, i))
+            .collect(),
+        laws: LawsRecord {
+            reciprocity: laws.reciprocity,
+            closure: laws.closure,
+            positivity: laws.positivity,
+            conservation: laws.conservation,
+        },
+        report: ReportRecord {
+            solver: report.method,
+            stop: spoken(report.stop).to_string(),
+            n_iterations: report.n_iterations,
+            n_applies: report.n_applies,
+            n_adjoint_applies: report.n_adjoint_applies,
+            products: report.products,
+            true_residual: report.true_residual,
+            error_bound: report.bracket.as_ref().map(|bracket| bracket.relative_width(&solution.radiance)),
+            seconds,
+        },
+        notes: tessellations(scene),
+        provenance,
+    }
+}
+
+fn bundle<'a>(
+    scene: &'a Scene,
+    bundles: &Bundles,
+    system: &System,
+    radiance: &Block,
+    irradiance: &Block,
+    i: usize,
+) -> Option<BundleRecord<'a>> {
+    let (element, bin) = bundles.element_of(i);
+    let patch = bundles.patch(element)?;
+    Some(BundleRecord {
+        element,
+        surface: &scene.surface_of(patch.facet).name,
+        side: match patch.side {
+            Side::Front => "front",
+            Side::Back => "back",
+        },
+        centre: patch.polygon.centroid().to_array(),
+        normal: patch.polygon.normal().to_array(),
+        area: patch.polygon.area(),
+        bin,
+        etendue: system.etendue()[i],
+        emission: system.emission().row(i).collect(),
+        radiance: radiance.row(i).collect(),
+        irradiance: irradiance.row(i).collect(),
+    })
+}
+
+/// Of this program's solves, only `--max-products` makes the observer stop one: its budget.
+pub fn spoken(stop: Stop) -> Stop {
+    if stop == Stop::Observer { Stop::Budget } else { stop }
+}

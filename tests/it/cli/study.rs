@@ -1,0 +1,88 @@
+//! `etendue study`: the folder it writes, and what it prints.
+
+use super::{CORNELL, Desk, FURNACE, read_json};
+use etendue::image::decode_exr;
+use std::fs;
+
+/// Enough samples for a report, too few for a good one.
+const FEW: [&str; 4] = ["--walk-samples", "16", "--path-samples", "16"];
+
+/// Holds a file to the beginning and the end of its format.
+fn assert_whole(name: &str, bytes: &[u8]) {
+    let text = || std::str::from_utf8(bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
+    match name.rsplit('.').next() {
+        Some("png") => assert!(bytes.starts_with(b"\x89PNG") && bytes.windows(4).any(|w| w == b"IEND"), "{name}"),
+        Some("exr") => {
+            let image = decode_exr(bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
+            assert_eq!((image.width, image.height), (12, 12), "{name}");
+            assert!(image.values.iter().all(|value| value.is_finite() && *value >= 0.0), "{name}");
+        }
+        Some("svg") => assert!(text().contains("<svg") && text().trim_end().ends_with("</svg>"), "{name}"),
+        Some("html") => assert!(text().starts_with("<!") && text().trim_end().ends_with("</html>"), "{name}"),
+        Some("csv") => assert!(text().lines().count() > 1 && text().ends_with('\n'), "{name}"),
+        Some("json") => assert!(serde_json::from_slice::<serde_json::Value>(bytes).is_ok(), "{name}"),
+        _ => panic!("{name} is no file of a report"),
+    }
+}
+
+/// Holds a folder to its list, and every file in it to its format.
+fn assert_folder(desk: &Desk, folder: &str) -> Vec<String> {
+    let report = read_json(&desk.path(folder).join("report.json"));
+    let mut listed: Vec<String> =
+        report["files"].as_array().unwrap().iter().map(|name| name.as_str().unwrap().to_string()).collect();
+    listed.push("report.json".into());
+    listed.sort();
+    let found = desk.names(folder);
+    assert_eq!(found, listed);
+    for name in &found {
+        assert_whole(name, &fs::read(desk.path(folder).join(name)).unwrap());
+    }
+    found
+}
+
+#[test]
+fn a_study_writes_its_folder_whole_and_replaces_its_own() {
+    let desk = Desk::new(&[]);
+    let scene = ["study", CORNELL, "-D", "resolution=12", "--patch-size", "1"];
+
+    // By default to out/SCENE, with a summary for people.
+    let first = desk.run(&[&scene[..], &FEW].concat());
+    assert_eq!(first.code, Some(0), "{}", first.stderr);
+    assert!(!first.stderr.contains(['\u{1b}', '\r']), "{:?}", first.stderr);
+    let names = assert_folder(&desk, "out/cornell");
+    for name in ["report.html", "report.json", "convergence.svg", "convergence.png", "convergence.csv", "solved.exr"] {
+        assert!(names.iter().any(|found| found == name), "{name} is not in {names:?}");
+    }
+    assert_eq!(desk.names("out"), ["cornell"]);
+    for method in etendue::solver::all(1.0) {
+        assert!(first.stdout.lines().any(|line| line.starts_with(method.name())), "{}", first.stdout);
+    }
+    assert!(first.stdout.trim_end().ends_with("report.html"), "{}", first.stdout);
+
+    // Again, replacing it: with --json, the object printed is the one written.
+    fs::remove_file(desk.path("out/cornell/solved.exr")).unwrap();
+    let second = desk.run(&[&scene[..], &FEW, &["--json", "--quiet", "--seed", "4711"]].concat());
+    assert_eq!((second.code, second.stderr.as_str()), (Some(0), ""));
+    assert_eq!(assert_folder(&desk, "out/cornell"), names);
+    assert_eq!(second.object(), read_json(&desk.path("out/cornell/report.json")));
+    assert_eq!(second.object()["provenance"]["seed"], 4711);
+
+    // Once something else lies in it, it is nobody's to replace.
+    fs::write(desk.path("out/cornell/notes.txt"), "mine").unwrap();
+    desk.run(&[&scene[..], &FEW].concat()).assert_refused(4, &["notes.txt", "not a report"]);
+    assert!(desk.path("out/cornell/notes.txt").exists());
+}
+
+#[test]
+fn a_scene_without_a_camera_has_a_report_without_pictures() {
+    let desk = Desk::new(&[("room.xml", FURNACE.as_bytes())]);
+    let run = desk.run(&[&["study", "room.xml", "--patch-size", "1", "-o", "a/b/report", "--json"], &FEW[..]].concat());
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let names = assert_folder(&desk, "a/b/report");
+    assert!(names.iter().all(|name| !name.ends_with(".exr")), "{names:?}");
+    let object = run.object();
+    assert_eq!((object["scene"].as_str(), object["n_bundles"].as_u64()), (Some("room"), Some(24)));
+    for run in object["solvers"].as_array().unwrap() {
+        assert!(super::number(&run["true_residual"]) <= 1e-12, "{run}");
+    }
+}
