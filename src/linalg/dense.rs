@@ -132,7 +132,6 @@ impl Dense {
                 out
             })
             .collect();
-        #[expect(clippy::needless_range_loop, reason = "c runs over three arrays")]
         for c in 0..C {
             let rows = results.as_flattened().iter();
             y.column_mut(first + c).iter_mut().zip(rows).for_each(|(y, row)| *y = row[c]);
