@@ -6,7 +6,7 @@ mod measurement;
 mod operators;
 mod system;
 
-pub use exchange::{Exchange, ExchangeReport, Repair};
+pub use exchange::{Exchange, ExchangeReport, Occlusion, Repair};
 pub use laws::Laws;
 pub use measurement::{Gather, Measurement};
 pub use operators::{Propagation, Transport};

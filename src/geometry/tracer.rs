@@ -173,7 +173,7 @@ impl Tracer {
     }
 
     /// Corners of a polygon, by handle.
-    pub(super) fn corners_of(&self, handle: u32) -> &[Vec3] {
+    pub fn corners_of(&self, handle: u32) -> &[Vec3] {
         &self.shapes[handle as usize].vertices
     }
 

@@ -20,6 +20,7 @@ mod report;
 mod sampling;
 mod scattering;
 mod scenes;
+mod shadows;
 mod solvers;
 mod sphere;
 mod stats;
