@@ -23,7 +23,7 @@ pub fn run(arguments: &Arguments, solve: &Solve, command: Vec<String>) -> Result
     let method = method.ok_or_else(|| Failure::new(Exit::Usage, format!("no solver '{}'", solve.solver)))?;
 
     // Direct methods write out the matrix, its factors, and one of them a copy.
-    let an_entry = if method.is_direct() { 12 } else { 0 };
+    let an_entry = if method.is_direct() { 16 } else { 0 };
     let square = |n: usize| (n as u64).saturating_mul(n as u64);
     let needed = |n: usize| System::memory_estimate(n).saturating_add(square(n).saturating_mul(an_entry));
     let chosen = choose(&solve.scene, |_, n| needed(n))?;
