@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 const SIGNIFICANCE: f64 = 1e-6;
 
 /// Bounces shown one by one.
-const N_BOUNCES: usize = 6;
+const N_BOUNCES: usize = 5;
 
 pub fn run(arguments: &Arguments, study: &Study, command: Vec<String>) -> Result<(), Failure> {
     let chosen = choose(&study.scene, |scene, n| study::memory_estimate(scene, n, N_BOUNCES))?;

@@ -44,15 +44,9 @@ pub struct TanhSinh {
     pub coarse_is_even: Vec<bool>,
 }
 
-<<<<<<< HEAD
-/// 65 nodes, step 0.1, out to 2e-17 from the ends: 14 digits for logarithmic ones.
-pub static TANH_SINH: LazyLock<TanhSinh> = LazyLock::new(|| {
-    let (step, reach) = (0.1, 32);
-=======
 /// 67 nodes, step 0.1, out to where the weights times their logarithm fall below 1e-16: 14 digits for logarithmic ends.
 pub static TANH_SINH: LazyLock<TanhSinh> = LazyLock::new(|| {
     let (step, reach) = (0.1, 33);
->>>>>>> 42cb9c9c244666882b30c01b5c149fdb4e18ee9b
     let mut fine = Vec::new();
     let mut coarse_is_even = Vec::new();
     for k in -reach..=reach {
