@@ -14,6 +14,7 @@ mod gallery;
 mod image;
 mod laws;
 mod medium;
+mod operators;
 mod patches;
 mod refinement;
 mod report;
