@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 /// Asked of the quadrature.
 const TOLERANCE: f64 = 1e-12;
 /// Reached at present on any pair, slivers and pairs that cut each other's plane included.
-const REACHED: f64 = 1e-9;
+const REACHED: f64 = 1e-12;
 /// By how much an estimate from two rules may fall short of the error: near-singular ends converge slower than it assumes.
 const HONEST: f64 = 20.0;
 /// Standard errors: with seven pairs in the family, 4.5 is a false alarm in 20 000 runs; seeds are fixed.
