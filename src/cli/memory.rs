@@ -110,11 +110,11 @@ fn finest_that_fits(too_small: f64, fits: impl Fn(f64) -> bool) -> Option<f64> {
         if fits(middle) { above = middle } else { below = middle }
     }
 
-    // Round up: coarser still fits.
+    // Round to nearest where that still fits, else up.
     let digits = (1.0 - above.log10().floor()).clamp(0.0, 30.0) as usize;
-    let scale = 10f64.powi(digits as i32);
-    let rounded = format!("{:.digits$}", (above * scale).ceil() / scale).parse().ok()?;
-    fits(rounded).then_some(rounded)
+    let up = above + 0.5 * 10f64.powi(-(digits as i32));
+    let rounded = [above, up].map(|size| format!("{size:.digits$}").parse::<f64>());
+    rounded.into_iter().flatten().find(|size| fits(*size))
 }
 
 #[cfg(test)]

@@ -86,9 +86,10 @@ fn describe(settings: &StudySettings) -> [(&'static str, String); 7] {
 fn summary(outcome: &StudyOutcome, folder: &Path) -> String {
     let mut text = format!("{:14} {:>9} {:>10} {:>10} {:>10}\n", "solver", "products", "seconds", "residual", "error");
     for run in &outcome.solvers {
+        let products = if run.kind == "direct" { "–".to_string() } else { format!("{:.1}", run.products) };
         text += &format!(
-            "{:14} {:>9.1} {:>10.3} {:>10.1e} {:>10.1e}  {}\n",
-            run.solver, run.products, run.seconds, run.true_residual, run.error, run.stop
+            "{:14} {products:>9} {:>10.3} {:>10.1e} {:>10.1e}  {}\n",
+            run.solver, run.seconds, run.true_residual, run.error, run.stop
         );
     }
     text += &format!("\n{:26} {:>9} {:>10} {:>10} {:>10}\n", "estimator", "slope", "seconds", "worst |z|", "p");
@@ -100,9 +101,12 @@ fn summary(outcome: &StudyOutcome, folder: &Path) -> String {
         );
     }
     let refinement = &outcome.refinement;
+    let order = match refinement.observed_order {
+        order if order.is_nan() => "no order observed".to_string(),
+        order => format!("order {order:.2}"),
+    };
     text += &format!(
-        "\nmatrix against path tracer: order {:.2}, finest mesh within {:.2} % of the continuous truth, surface means {}\n",
-        refinement.observed_order,
+        "\nmatrix against path tracer: {order}, finest mesh within {:.2} % of the continuous truth, surface means {}\n",
         100.0 * refinement.finest_error,
         if refinement.agrees { "agree" } else { "DISAGREE" }
     );

@@ -179,6 +179,21 @@ fn running_out_of_products_ends_in_6_with_the_answer_so_far() {
 }
 
 #[test]
+fn light_that_nothing_absorbs_has_no_answer() {
+    let desk = Desk::new(&[("white.xml", super::FURNACE.as_bytes())]);
+    let white = ["white.xml", "-D", "albedo=1", "--patch-size", "2"];
+    for solver in ["cg", "lu"] {
+        let run = desk.run(&[&["solve", "--solver", solver], &white[..]].concat());
+        assert_eq!(run.code, Some(6), "{solver}: {}", run.stderr);
+        assert!(run.stderr.contains("no steady state"), "{solver}: {}", run.stderr);
+    }
+    // Whether rounding leaves the matrix singular decides if the solver or the walk notices first.
+    let run = desk.run(&[&["study"], &white[..]].concat());
+    run.assert_refused(if run.stderr.contains("never ends") { 4 } else { 6 }, &[]);
+    assert_eq!(desk.names("."), ["white.xml"]);
+}
+
+#[test]
 fn output_is_a_whole_file_with_the_same_object() {
     let desk = Desk::new(&[("old.json", b"old")]);
     for (flags, name) in [(&["--json"][..], "new.json"), (&[], "old.json")] {
