@@ -135,7 +135,7 @@ pub(super) fn compute(
         .into_par_iter()
         .with_max_len(1)
         .map(|i| {
-            let row = upper_row(&patches, &nodes, etendue, &occluders, settings, i);
+            let row = upper_row(&patches, (&ladder, &nodes), etendue, &occluders, settings, i);
             let finished = done.fetch_add(n - i, Ordering::Relaxed) + (n - i);
             progress(0.95 * finished as f64 / (0.5 * (n * (n + 1)) as f64));
             row
@@ -189,7 +189,7 @@ pub(super) fn compute(
 /// The pairs (i, j), j > i, that exchange anything.
 fn upper_row(
     patches: &[&Patch],
-    nodes: &[Nodes],
+    (ladder, nodes): (&Ladder, &[Nodes]),
     etendue: &[f64],
     occluders: &Tracer,
     settings: Exchange,
@@ -203,7 +203,7 @@ fn upper_row(
         if occluders.coplanar(a.facet, b.facet) {
             continue;
         }
-        let pair = quadrature::unoccluded((&a.polygon, &nodes[i]), (&b.polygon, &nodes[j]), settings.tolerance);
+        let pair = quadrature::unoccluded(ladder, (&a.polygon, &nodes[i]), (&b.polygon, &nodes[j]), settings.tolerance);
         let Some((exchange, error)) = pair else { continue };
         tally.n_pairs += 1;
         tally.quadrature_error = tally.quadrature_error.max(error / exchange);
