@@ -84,6 +84,9 @@ fn check_converged(report: &SolveReport, solve: &Solve) -> Result<(), Failure> {
     let remark = match (report.stop, solve.max_products) {
         (Stop::Budget | Stop::Observer, Some(most)) => format!("--max-products {most} ended it"),
         (Stop::Budget | Stop::Observer, None) => "another --solver may get there".to_string(),
+        (Stop::Stagnated, _) => {
+            "the residual no longer falls: the scene loses no light, or rounding allows no less".to_string()
+        }
         _ if *true_residual <= DRIFT * asked => return Ok(()),
         _ if *true_residual > NO_ANSWER => NO_STEADY_STATE.to_string(),
         _ => "rounding allows no less; ask for a larger --tolerance".to_string(),

@@ -11,19 +11,36 @@ const BUDGET: f64 = 1e6;
 /// A residual this much above the best so far is divergence, not a hump.
 const DIVERGENCE: f64 = 1e8;
 
+/// This many iterations in which the residual did not fall by even [`PROGRESS`] in all end with [`Stop::Stagnated`]: rounding, or a scene
+/// that loses nothing.
+const PATIENCE: usize = 1000;
+
+/// Least relative fall of the residual that counts.
+const PROGRESS: f64 = 1e-7;
+
 /// Keeps the history of one solve and decides when it ends.
 pub(super) struct Monitor<'a> {
     method: &'static str,
     tolerance: f64,
     observer: &'a mut dyn Observer,
     best: f64,
+    /// Residual and iteration that last made progress.
+    progress: (f64, usize),
     pub work: Work,
     pub history: Vec<f64>,
 }
 
 impl<'a> Monitor<'a> {
     pub fn new(method: &'static str, tolerance: f64, observer: &'a mut dyn Observer) -> Self {
-        Self { method, tolerance, observer, best: f64::INFINITY, work: Work::default(), history: Vec::new() }
+        Self {
+            method,
+            tolerance,
+            observer,
+            best: f64::INFINITY,
+            progress: (f64::INFINITY, 0),
+            work: Work::default(),
+            history: Vec::new(),
+        }
     }
 
     /// Records an iterate and its residual; `Some` ends the solve.
@@ -33,6 +50,9 @@ impl<'a> Monitor<'a> {
         self.history.push(residual);
         if residual.is_nan() {
             return Err(SolveError::NotFinite { method: self.method, iteration: index });
+        }
+        if residual < self.progress.0 * (1.0 - PROGRESS) {
+            self.progress = (residual, index);
         }
         self.best = self.best.min(residual);
         if residual > DIVERGENCE * self.best.max(f64::MIN_POSITIVE) && residual > 1.0 {
@@ -46,6 +66,8 @@ impl<'a> Monitor<'a> {
             Some(Stop::Observer)
         } else if self.work.products >= BUDGET {
             Some(Stop::Budget)
+        } else if index - self.progress.1 >= PATIENCE {
+            Some(Stop::Stagnated)
         } else {
             None
         })

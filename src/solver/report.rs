@@ -13,6 +13,8 @@ pub enum Stop {
     Converged,
     /// The products ran out first.
     Budget,
+    /// The residual no longer falls.
+    Stagnated,
     /// The observer said so.
     Observer,
 }
@@ -23,6 +25,7 @@ impl fmt::Display for Stop {
             Self::Direct => "direct",
             Self::Converged => "converged",
             Self::Budget => "budget",
+            Self::Stagnated => "stagnated",
             Self::Observer => "observer",
         })
     }

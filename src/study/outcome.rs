@@ -70,7 +70,7 @@ pub struct SolverRun {
     pub solver: String,
     /// "direct" or "iterative".
     pub kind: String,
-    /// Why it stopped, as one word: "direct", "converged", "budget".
+    /// Why it stopped, as one word: "direct", "converged", "budget", "stagnated".
     pub stop: String,
     pub n_applies: usize,
     pub n_adjoint_applies: usize,

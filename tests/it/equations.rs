@@ -173,13 +173,21 @@ fn a_white_closed_equation_is_singular() {
 }
 
 #[test]
-fn a_series_that_never_falls_runs_out_of_budget() {
+fn a_series_that_never_falls_stagnates() {
     // K = 1 on one unknown: every bounce is as bright as the last.
     let transport = Diagonal::new(column(&[1.0]));
     let emission = column(&[1.0]);
     let answer = Neumann { tolerance: TOLERANCE }.solve(plain(&transport, &emission), &mut ()).unwrap();
-    assert_eq!((answer.report.stop, answer.report.n_applies), (Stop::Budget, 1_000_000));
+    assert_eq!((answer.report.stop, answer.report.n_applies), (Stop::Stagnated, 1001));
     assert_eq!((answer.report.true_residual, answer.report.bracket), (1.0, None));
+}
+
+#[test]
+fn a_series_that_falls_slowly_runs_out_of_budget() {
+    let transport = Diagonal::new(column(&[1.0 - 1e-8]));
+    let emission = column(&[1.0]);
+    let answer = Neumann { tolerance: TOLERANCE }.solve(plain(&transport, &emission), &mut ()).unwrap();
+    assert_eq!((answer.report.stop, answer.report.n_applies), (Stop::Budget, 1_000_000));
 }
 
 #[test]

@@ -165,9 +165,8 @@ fn undoing_the_repair_gives_the_unrepaired_system() {
     // What the repair was for: closure fails by the sampling before it, and by rounding after it.
     let report = repaired.system.report();
     let repair = report.repair.unwrap();
-    assert!(
-        undone.laws().closure > 1e-4 && undone.laws().closure == raw.system.laws().closure.max(undone.laws().closure)
-    );
+    let open = undone.laws().closure;
+    assert!(open > 1e-4 && (open - raw.system.laws().closure).abs() < LAW, "{open:e}");
     assert!((report.closure_before_repair - raw.system.laws().closure).abs() < LAW);
     assert!(repair.after <= LAW && repair.strongest > 1e-4 && repair.sweeps > 0);
     assert_eq!(undone.laws().reciprocity, 0.0);

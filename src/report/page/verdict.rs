@@ -27,7 +27,8 @@ pub fn agrees(run: &EstimatorRun) -> bool {
 fn solvers(outcome: &StudyOutcome) -> Option<String> {
     // A run that ran out of budget is no claim of agreement.
     let n_all = outcome.solvers.len();
-    let finished: Vec<_> = outcome.solvers.iter().filter(|run| run.stop != "budget").collect();
+    let finished: Vec<_> =
+        outcome.solvers.iter().filter(|run| ["direct", "converged"].contains(&run.stop.as_str())).collect();
     let worst = finished.iter().map(|run| run.error).filter(|e| !e.is_nan()).reduce(f64::max)?;
     let who = match finished.len() {
         1 if n_all == 1 => "the one solver".into(),
