@@ -1,7 +1,7 @@
 //! The four laws, measured on the assembled matrices.
 
 use super::System;
-use crate::linalg::{LinearOperator, max_abs};
+use crate::linalg::{LinearOperator, worst};
 
 /// Worst relative violation of each law; zero is perfect.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,20 +30,24 @@ impl Laws {
             system.exchange().for_each_in_row(i, |j, t| {
                 let mirrored = column[j];
                 let scale = t.abs().max(mirrored.abs());
-                if scale > 0.0 {
-                    reciprocity = reciprocity.max((t - mirrored).abs() / scale);
+                if scale != 0.0 {
+                    reciprocity = larger(reciprocity, (t - mirrored).abs() / scale);
                 }
-                positivity = positivity.max(-t / mu);
+                positivity = larger(positivity, -t / mu);
                 sum += t;
             });
             let lost: f64 = system.sinks().row(i).sum();
-            closure = closure.max(((sum + lost) / mu - 1.0).abs());
+            closure = larger(closure, ((sum + lost) / mu - 1.0).abs());
         }
 
         let albedos = system.transport().scattering().values();
-        let conservation = albedos.values().iter().map(|albedo| albedo - 1.0).fold(0.0, f64::max);
-        positivity = albedos.values().iter().map(|albedo| -albedo).fold(positivity, f64::max);
-        let worst = |v: f64| max_abs(&[v]);
-        Self { reciprocity, closure: worst(closure), positivity, conservation }
+        let conservation = worst(albedos.values().iter().map(|albedo| albedo - 1.0));
+        positivity = larger(positivity, worst(albedos.values().iter().map(|albedo| -albedo)));
+        Self { reciprocity, closure, positivity, conservation }
     }
+}
+
+/// The larger of the two; NaN if either is.
+fn larger(a: f64, b: f64) -> f64 {
+    worst([a, b].into_iter())
 }

@@ -156,9 +156,8 @@ impl<'a> Measurement<'a> {
         let positions = Kronecker::<2>::new(self.gather.seed);
         let drawn: Vec<[(f64, f64); 2]> =
             (0..self.gather.samples).map(|s| positions.point(s).map(|u| self.filter.draw(u))).collect();
-        let total: f64 = drawn.iter().map(|[(_, sx), (_, sy)]| sx * sy).sum();
         for (s, [(dx, sx), (dy, sy)]) in drawn.into_iter().enumerate() {
-            let weight = sx * sy / total;
+            let weight = sx * sy * self.filter.weight().powi(2) / self.gather.samples as f64;
             let ray = self.camera.ray(x as f64 + 0.5 + dx, y as f64 + 0.5 + dy);
             let Some(hit) = self.tracer.closest(&ray, None) else { continue };
             let side = if hit.front { Side::Front } else { Side::Back };

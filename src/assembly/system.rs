@@ -27,6 +27,12 @@ pub struct System {
 pub enum AssemblyError {
     #[error("surface '{surface}' is not diffuse ({brdf}): one bin of directions cannot hold it")]
     NotDiffuse { surface: String, brdf: String },
+    #[error(
+        "surface '{surface}' exchanges {fullness:.2} times its étendue near ({:.4}, {:.4}, {:.4}): another surface lies in its plane, \
+         faces the same way and overlaps it\n  = move one of the two off the plane, or cut the hole out",
+        .position[0], .position[1], .position[2]
+    )]
+    Overlap { surface: String, position: [f64; 3], fullness: f64 },
     #[error("element {element} is not a patch: media and emitting environments are not assembled in a surface basis")]
     NotAPatch { element: usize },
 }
@@ -65,8 +71,15 @@ pub fn assemble_watched(
         }
     }
 
+    let computed = exchange::compute(scene, bundles, settings, progress);
     let exchange::Assembled { exchange, sinks, repair_scale, report } =
-        exchange::compute(scene, bundles, settings, progress);
+        computed.map_err(|exchange::Overfull { bundle, fullness }| {
+            let patch = bundles.patch(bundles.element_of(bundle).0);
+            let (surface, position) = patch.map_or((String::new(), [f64::NAN; 3]), |patch| {
+                (scene.surface_of(patch.facet).name.clone(), patch.polygon.centroid().to_array())
+            });
+            AssemblyError::Overlap { surface, position, fullness }
+        })?;
     let exchange = Arc::new(exchange);
     let etendue: Arc<[f64]> = bundles.etendue().into();
     let root = Block::from_fn(n, n_bands, |i, band| albedo.get(i, band).sqrt());

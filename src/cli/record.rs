@@ -20,6 +20,7 @@ pub struct Record<'a> {
     /// In the order of the unknowns.
     bundles: Vec<BundleRecord<'a>>,
     laws: LawsRecord,
+    exchange: ExchangeRecord,
     report: ReportRecord,
     /// What stands for what: tessellated shapes.
     notes: Vec<String>,
@@ -54,6 +55,22 @@ struct LawsRecord {
     conservation: f64,
 }
 
+/// How good T was before its closure was repaired: the laws hold after it however poor it was.
+#[derive(Serialize)]
+struct ExchangeRecord {
+    n_pairs: usize,
+    n_clear: usize,
+    n_hidden: usize,
+    n_sampled: usize,
+    /// Relative to the pair's T, the worst pair.
+    quadrature_error: f64,
+    /// Standard error of a row sum relative to μ, root mean square over bundles.
+    visibility_error: f64,
+    closure_before_repair: f64,
+    /// Largest change of a row's scale by the repair.
+    repair_strength: f64,
+}
+
 #[derive(Serialize)]
 struct ReportRecord {
     solver: &'static str,
@@ -79,7 +96,7 @@ pub fn record<'a>(
 ) -> Record<'a> {
     let irradiance = system.irradiance(&solution.radiance);
     let report = &solution.report;
-    let laws = system.laws();
+    let (laws, exchange) = (system.laws(), system.report());
     Record {
         schema: "etendue.solve/1",
         scene: scene.name(),
@@ -94,6 +111,16 @@ pub fn record<'a>(
             closure: laws.closure,
             positivity: laws.positivity,
             conservation: laws.conservation,
+        },
+        exchange: ExchangeRecord {
+            n_pairs: exchange.n_pairs,
+            n_clear: exchange.n_clear,
+            n_hidden: exchange.n_hidden,
+            n_sampled: exchange.n_sampled,
+            quadrature_error: exchange.quadrature_error,
+            visibility_error: exchange.visibility_error,
+            closure_before_repair: exchange.closure_before_repair,
+            repair_strength: exchange.repair.map_or(0.0, |repair| repair.strongest),
         },
         report: ReportRecord {
             solver: report.method,

@@ -1,13 +1,13 @@
 //! `etendue study`: the main job.
 
 use super::arguments::{Arguments, Study};
-use super::exit::Failure;
+use super::exit::{Exit, Failure};
 use super::output;
 use super::progress::Bars;
 use super::provenance::provenance;
 use super::scene::choose;
 use crate::assembly::{Exchange, Gather};
-use crate::study::{StudyOutcome, StudySettings};
+use crate::study::{SolverRun, StudyOutcome, StudySettings};
 use crate::{report, study};
 use std::path::{Path, PathBuf};
 
@@ -57,9 +57,23 @@ pub fn run(arguments: &Arguments, study: &Study, command: Vec<String>) -> Result
         // As written, and not parsed and written again: every digit counts.
         let json = artifacts.iter().find(|artifact| artifact.name == "report.json");
         let text = json.map(|artifact| String::from_utf8_lossy(&artifact.bytes)).unwrap_or_default();
-        return output::print(&format!("{}\n", text.trim_end()));
+        output::print(&format!("{}\n", text.trim_end()))?;
+    } else if !arguments.quiet {
+        output::print(&summary(&outcome, &folder))?;
     }
-    if arguments.quiet { Ok(()) } else { output::print(&summary(&outcome, &folder)) }
+    check_converged(&outcome)
+}
+
+/// The report is there either way; whether every solver got where it should, the exit code says.
+fn check_converged(outcome: &StudyOutcome) -> Result<(), Failure> {
+    let unfinished = |run: &&SolverRun| !["direct", "converged"].contains(&run.stop.as_str());
+    let names: Vec<String> =
+        outcome.solvers.iter().filter(unfinished).map(|run| format!("{} ({})", run.solver, run.stop)).collect();
+    if names.is_empty() {
+        return Ok(());
+    }
+    let message = format!("not converged: {}\n  = the report was written all the same", names.join(", "));
+    Err(Failure::new(Exit::NotConverged, message))
 }
 
 /// The last part of a scene's name that can name a folder.
@@ -105,10 +119,13 @@ fn summary(outcome: &StudyOutcome, folder: &Path) -> String {
         order if order.is_nan() => "no order observed".to_string(),
         order => format!("order {order:.2}"),
     };
-    text += &format!(
-        "\nmatrix against path tracer: {order}, finest mesh within {:.2} % of the continuous truth, surface means {}\n",
-        100.0 * refinement.finest_error,
-        if refinement.agrees { "agree" } else { "DISAGREE" }
-    );
+    let finding = match refinement.finest_error {
+        error if error.is_nan() => "one mesh alone tells no discretisation error".to_string(),
+        error => {
+            let verdict = if refinement.agrees { "agree" } else { "DISAGREE" };
+            format!("{order}, finest mesh {:.2} % off the continuous truth, surface means {verdict}", 100.0 * error)
+        }
+    };
+    text += &format!("\nmatrix against path tracer: {finding}\n");
     text + &format!("\n{}\n", folder.join("report.html").display())
 }

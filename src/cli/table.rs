@@ -61,6 +61,15 @@ pub fn table(scene: &Scene, bundles: &Bundles, system: &System, solution: &Solut
         short(laws.positivity),
         short(laws.conservation)
     ));
+    let exchange = system.report();
+    lines.push(format!(
+        "exchange before repair: closure {}, visibility {}, quadrature {} ({} of {} pairs sampled)",
+        short(exchange.closure_before_repair),
+        short(exchange.visibility_error),
+        short(exchange.quadrature_error),
+        exchange.n_sampled,
+        exchange.n_pairs
+    ));
     lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
 }
 

@@ -11,7 +11,7 @@ pub const SCORES_A_COMPARISON: f64 = 400.0;
 ///
 /// A random walk that finds a small lamp scores rarely and much: an entry of reference value m whose column is at most b expects at
 /// least n m / b scores from n samples, for no score is much above b. Only the reference decides what is joined, never the sample,
-/// so the comparisons stay honest. Estimates of different rows must be independent. Shapes: all n × bands, one weight a row.
+/// so the comparisons stay honest. A column with too few scores in all has no comparison. Estimates of different rows must be independent. Shapes: all n × bands, one weight a row.
 pub fn pooled(
     reference: &Block,
     mean: &Block,
@@ -19,7 +19,7 @@ pub fn pooled(
     weights: &[f64],
     n_samples: u64,
 ) -> [Block; 3] {
-    let mut rows: Vec<[f64; 3]> = Vec::new();
+    let mut rows: Vec<([f64; 3], f64)> = Vec::new();
     for band in 0..reference.n_columns() {
         let most = crate::linalg::max_abs(reference.column(band));
         let first = rows.len();
@@ -30,12 +30,17 @@ pub fn pooled(
             sums[2] += w * w * variance_of_mean.get(i, band);
             weight += w;
             scores += n_samples as f64 * reference.get(i, band).abs() / most;
-            let last = i + 1 == weights.len();
-            if scores >= SCORES_A_COMPARISON || (last && rows.len() == first) {
-                rows.push([sums[0] / weight, sums[1] / weight, sums[2] / (weight * weight)]);
+            if scores >= SCORES_A_COMPARISON {
+                rows.push((sums, weight));
                 (sums, weight, scores) = ([0.0; 3], 0.0, 0.0);
             }
         }
+        // What is left over joins the last comparison.
+        if let [.., (last, last_weight)] = &mut rows[first..] {
+            last.iter_mut().zip(sums).for_each(|(total, rest)| *total += rest);
+            *last_weight += weight;
+        }
     }
-    std::array::from_fn(|k| Block::from_fn(rows.len(), 1, |r, _| rows[r][k]))
+    let scale = |k: usize, weight: f64| if k == 2 { weight * weight } else { weight };
+    std::array::from_fn(|k| Block::from_fn(rows.len(), 1, |r, _| rows[r].0[k] / scale(k, rows[r].1)))
 }

@@ -154,7 +154,11 @@ impl Tracer {
     pub(super) fn near(&self, points: impl Iterator<Item = Vec3>, mut visit: impl FnMut(u32, usize, &[Vec3])) {
         let mut bounds = Aabb::empty();
         for p in points {
-            bounds.extend(Vec3A::from(((p - self.centre) / self.radius).as_vec3()));
+            // Grown by what rounding to f32 may have moved the point: a shaft can be far larger than what stands in it.
+            let point = Vec3A::from(((p - self.centre) / self.radius).as_vec3());
+            let slack = point.abs() * (2.0 * f32::EPSILON);
+            bounds.extend(point - slack);
+            bounds.extend(point + slack);
         }
         self.tree.aabb_traverse(bounds, |tree, node| {
             let node = &tree.nodes[node as usize];

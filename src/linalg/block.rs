@@ -88,13 +88,10 @@ impl Block {
 
 /// max |xᵢ|; NaN if any xᵢ is NaN.
 pub fn max_abs(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |worst: f64, v| {
-        if v.is_nan() {
-            f64::NAN
-        } else if worst.is_nan() {
-            worst
-        } else {
-            worst.max(v.abs())
-        }
-    })
+    worst(values.iter().map(|v| v.abs()))
+}
+
+/// The largest of these and 0; NaN if any is NaN, which `f64::max` would lose.
+pub fn worst(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |worst: f64, v| if v.is_nan() || worst.is_nan() { f64::NAN } else { worst.max(v) })
 }

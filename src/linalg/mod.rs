@@ -9,7 +9,7 @@ mod matrix;
 mod operator;
 mod sparse;
 
-pub use block::{Block, max_abs};
+pub use block::{Block, max_abs, worst};
 pub use dense::Dense;
 pub use diagonal::Diagonal;
 pub use equation::{Equation, SelfAdjoint};

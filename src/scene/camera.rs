@@ -96,6 +96,9 @@ impl Camera {
         if let Some(v) = frame.iter().find(|v| (v.length() - 1.0).abs().is_nan() || (v.length() - 1.0).abs() > 1e-9) {
             return fail("length of a frame vector", v.length(), "1");
         }
+        if let Some((quantity, value, expected)) = self.film.filter.invalid() {
+            return fail(quantity, value, expected);
+        }
         if !self.origin.is_finite() {
             return fail("origin", self.origin.max_element(), "finite");
         }

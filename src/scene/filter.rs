@@ -14,6 +14,22 @@ impl PixelFilter {
         }
     }
 
+    /// The first parameter out of its range, with what it must be: positive widths, and cubics that are not mostly negative.
+    pub(super) fn invalid(&self) -> Option<(&'static str, f64, &'static str)> {
+        let width = |name, value: f64| {
+            let fits = value.is_finite() && value > 0.0 && value <= 64.0;
+            (!fits).then_some((name, value, "above 0 and at most 64 pixels"))
+        };
+        let share = |name, value: f64| (!(0.0..=1.0).contains(&value)).then_some((name, value, "within [0, 1]"));
+        match *self {
+            Self::Box { radius } | Self::Tent { radius } => width("filter radius", radius),
+            Self::Gaussian { standard_deviation } => width("filter standard deviation", standard_deviation),
+            Self::Lanczos { lobes } => width("filter lobes", lobes),
+            Self::Mitchell { b, c } => share("filter parameter B", b).or_else(|| share("filter parameter C", c)),
+            Self::CatmullRom => None,
+        }
+    }
+
     /// One-dimensional weight at distance x from the centre, not normalised; a pixel weighs by the product of both axes.
     ///
     /// Sources: Mitchell and Netravali (1988), eq. 8; Duchon (1979).
@@ -45,6 +61,8 @@ pub struct FilterTable {
     filter: PixelFilter,
     /// ∫ |filter| from −radius up to each of the equidistant ends of cells, normalised to 1.
     cumulative: Vec<f64>,
+    /// ∫ |filter| / ∫ filter.
+    weight: f64,
 }
 
 impl FilterTable {
@@ -53,15 +71,21 @@ impl FilterTable {
 
     pub fn new(filter: &PixelFilter) -> Self {
         let centre = |k: usize| filter.radius() * (2.0 * (k as f64 + 0.5) / Self::CELLS as f64 - 1.0);
-        let mut sum = 0.0;
+        let (mut sum, mut signed) = (0.0, 0.0);
         let mut cumulative: Vec<f64> = (0..Self::CELLS)
             .map(|k| {
                 sum += filter.eval(centre(k)).abs();
+                signed += filter.eval(centre(k));
                 sum
             })
             .collect();
         cumulative.iter_mut().for_each(|c| *c /= sum);
-        Self { filter: *filter, cumulative }
+        Self { filter: *filter, cumulative, weight: sum / signed }
+    }
+
+    /// What a sample of sign +1 weighs, so that the mean of weights is one: 1 for filters without negative lobes.
+    pub fn weight(&self) -> f64 {
+        self.weight
     }
 
     /// From a number uniform in [0, 1): an offset in pixels, and the sign of the filter there.

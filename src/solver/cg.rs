@@ -9,7 +9,7 @@
 //! (2003), algorithm 6.18.
 
 use super::monitor::Monitor;
-use super::report::{conclude, relative_residual};
+use super::report::{band_residual, conclude, relative_residual};
 use super::self_adjoint::{check_self_adjoint, inner};
 use super::{Observer, Solution, SolveError, Solver};
 use crate::linalg::{Block, Equation};
@@ -61,7 +61,8 @@ impl Solver for Cg {
             }
 
             for (band, norm) in norms.iter_mut().enumerate() {
-                if *norm == 0.0 {
+                // A band that is done rests: its numbers would only sink into the denormals.
+                if *norm == 0.0 || band_residual(equation.emission, &residual, band) <= self.tolerance {
                     continue;
                 }
                 // Step to the minimum along p, and turn the next direction conjugate.

@@ -12,7 +12,7 @@ use super::jacobi::one_minus_diagonal;
 use super::monitor::Monitor;
 use super::report::conclude;
 use super::{Observer, Solution, SolveError, Solver};
-use crate::linalg::{Block, Equation, max_abs};
+use crate::linalg::{Block, Equation, max_abs, worst as largest};
 use rayon::prelude::*;
 
 /// Sweeps forward until the residual is below the tolerance.
@@ -42,7 +42,7 @@ impl Solver for GaussSeidel {
                 *worst = sweep(equation, band, own.column(band), l, row);
             });
             monitor.work.products += 1.0;
-            let residual = worst.iter().fold(0.0, |max: f64, w| if w.is_nan() { f64::NAN } else { max.max(*w) });
+            let residual = largest(worst.iter().copied());
             if let Some(stop) = monitor.check(residual, &radiance)? {
                 break stop;
             }
@@ -60,7 +60,7 @@ fn sweep(equation: Equation<'_>, band: usize, own: &[f64], radiance: &mut [f64],
         let gathered: f64 = row.iter().zip(radiance.iter()).map(|(k, l)| k * l).sum();
         let residual = emission[i] + gathered - radiance[i];
         radiance[i] += residual / own[i];
-        worst = if residual.is_nan() { f64::NAN } else { f64::max(worst, residual.abs()) };
+        worst = largest([worst, residual.abs()].into_iter());
     }
     let scale = max_abs(emission);
     if worst == 0.0 { 0.0 } else { worst / scale }

@@ -50,7 +50,7 @@ pub trait Solver {
 /// One iterate on its way to an observer.
 #[derive(Clone, Copy)]
 pub struct Iteration<'a> {
-    /// 0 is the starting guess.
+    /// 0 is the first iterate that the method has a residual for: its starting guess, or for Gauss–Seidel the first sweep.
     pub index: usize,
     /// Work so far in products with K: entries touched / entries of K.
     pub products: f64,

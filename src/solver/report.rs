@@ -1,7 +1,7 @@
 //! An answer and how it was come by.
 
 use super::{Bracket, SolveError, bracket};
-use crate::linalg::{Block, Equation};
+use crate::linalg::{Block, Equation, max_abs, worst};
 use std::fmt;
 
 /// Why a solver stopped.
@@ -96,11 +96,13 @@ pub(super) fn conclude(
     Ok(Solution { radiance, report })
 }
 
-/// max over bands of ‖r‖∞ / ‖E‖∞; NaN if any entry is NaN. A band that emits nothing has residual 0 or ∞.
+/// max over bands of ‖r‖∞ / ‖E‖∞; NaN if any entry is NaN.
 pub(super) fn relative_residual(emission: &Block, residual: &Block) -> f64 {
-    let worst = |values: &[f64]| crate::linalg::max_abs(values);
-    emission.columns().zip(residual.columns()).map(|(e, r)| (worst(e), worst(r))).fold(0.0, |max: f64, (e, r)| {
-        let relative = if r == 0.0 { 0.0 } else { r / e };
-        if relative.is_nan() || max.is_nan() { f64::NAN } else { max.max(relative) }
-    })
+    worst((0..emission.n_columns()).map(|band| band_residual(emission, residual, band)))
+}
+
+/// ‖r‖∞ / ‖E‖∞ of one band; a band that emits nothing has residual 0 or ∞.
+pub(super) fn band_residual(emission: &Block, residual: &Block, band: usize) -> f64 {
+    let r = max_abs(residual.column(band));
+    if r == 0.0 { 0.0 } else { r / max_abs(emission.column(band)) }
 }

@@ -39,17 +39,17 @@ pub struct ExchangeSummary {
     pub n_unoccluded: usize,
     /// Of these: visibility sampled by rays.
     pub n_sampled: usize,
-    /// Of these: found hidden by every ray.
+    /// Of these: proved hidden.
     pub n_hidden: usize,
-    /// Worst quadrature error estimate over all pairs, relative to μ.
+    /// Worst quadrature error estimate over all pairs, relative to the pair's T.
     pub quadrature_error: f64,
     /// Root mean square over bundles of the standard error of a row sum, relative to μ: the visibility noise.
     pub visibility_error: f64,
-    /// max |Σⱼ Tᵢⱼ − μᵢ| / μᵢ before the symmetric repair.
+    /// max |Σⱼ Tᵢⱼ + sinksᵢ − μᵢ| / μᵢ before the symmetric repair.
     pub closure_before_repair: f64,
     /// Sweeps of symmetric (Sinkhorn) scaling.
     pub repair_sweeps: usize,
-    /// max |Lrepaired − Lraw| / max |L|, what the repair changed.
+    /// max |Lrepaired − Lraw| / max |L|, what the repair changed; NaN where the unrepaired matrix creates light.
     pub repair_change: f64,
     /// Fraction of all étendue that ends in the environment.
     pub escaped: f64,
@@ -115,9 +115,9 @@ pub struct EstimatorRun {
     /// "discrete" for walks on the matrix, "continuous" for path tracers: which truth it estimates.
     pub truth: String,
     pub points: Vec<SamplePoint>,
-    /// Largest |z| over all bundles and bands against the discrete solution, at the largest sample count.
+    /// Largest |z| against the discrete solution at the largest sample count, over bundles pooled until each comparison is normal.
     pub worst_z: f64,
-    /// How many z-scores were looked at.
+    /// How many z-scores were looked at; 0 where the samples are too few for any.
     pub n_comparisons: usize,
     /// Probability of a |z| this large somewhere, were the two equal (Šidák-corrected).
     pub p_value: f64,
@@ -145,7 +145,8 @@ pub struct Refinement {
     pub observed_order: f64,
     /// Standard error of the order.
     pub order_standard_error: f64,
-    /// Estimated discretisation error of the finest level's mean reflected radiance, relative.
+    /// Discretisation error of the finest level's mean reflected radiance, relative: the larger of what the levels extrapolate to
+    /// and what was measured beyond noise. NaN where there is one mesh only.
     pub finest_error: f64,
     /// True if every surface's mean at the finest level agrees with the path tracer within discretisation plus statistical error.
     pub agrees: bool,

@@ -102,7 +102,7 @@ pub fn compare(
         _ => 1.0,
     };
     let shrink = 2f64.powf(own_order.clamp(ORDERS.0, ORDERS.1)) - 1.0;
-    let finest_error = steps.last().map_or(f64::NAN, |step| step / shrink);
+    let extrapolated = steps.last().map_or(f64::NAN, |step| step / shrink);
 
     // Compare surface by surface.
     let finest = &levels[levels.len() - 1];
@@ -115,7 +115,7 @@ pub fn compare(
             let (matrix, path_tracer) = (finest.reflected.get(s, band), truth.get(s, band));
             let standard_error = variance.get(s, band).sqrt();
             let step = (matrix - before.reflected.get(s, band)).abs();
-            let discretisation_error = (step / shrink).max(finest_error * path_tracer.abs());
+            let discretisation_error = (step / shrink).max(extrapolated * path_tracer.abs());
             // Two exact means may still differ by the rounding of their sums.
             let rounding = 1e-12 * path_tracer.abs();
             agrees &= (matrix - path_tracer).abs() <= discretisation_error + critical * standard_error + rounding;
@@ -129,6 +129,9 @@ pub fn compare(
             });
         }
     }
+    // What was measured beyond noise is discretisation error too, whatever the levels extrapolate to.
+    let beyond_noise = measured.last().map_or(0.0, |level| (level.error * level.error - noise * noise).max(0.0).sqrt());
+    let finest_error = if extrapolated.is_nan() { f64::NAN } else { extrapolated.max(beyond_noise) };
     Refinement {
         levels: measured,
         observed_order: fitted.as_ref().map_or(f64::NAN, |fit| fit.order),

@@ -85,8 +85,17 @@ pub fn run(
     let refinement = stages.time("refine", |progress| -> Result<Refinement, StudyError> {
         let mut levels = Vec::new();
         for k in (1..settings.n_levels).rev() {
+            // Where facets are smaller than patches, a coarser mesh is the same mesh and shows nothing.
             let patch_size = settings.resolution.patch_size * (1u64 << k) as f64;
-            let coarse = Bundles::new(scene, Resolution { patch_size, ..settings.resolution })?;
+            let resolution = Resolution { patch_size, ..settings.resolution };
+            let finer = levels.last().map_or(0, |level: &LevelSolution| level.n_bundles);
+            if !patch_size.is_finite() || Bundles::count(scene, resolution)? <= finer {
+                continue;
+            }
+            let coarse = Bundles::new(scene, resolution)?;
+            if coarse.n_bundles() >= bundles.n_bundles() {
+                continue;
+            }
             // Each level costs some sixteen times the one before.
             let share = |done: f64| progress(done * 16f64.powi(1 - k as i32));
             let coarse_system = assemble_watched(scene, &coarse, settings.exchange, &share)?;
@@ -107,7 +116,7 @@ pub fn run(
         n_bundles: bundles.n_bundles(),
         bands: scene.bands().to_vec(),
         tessellations: tessellations(scene),
-        exchange: summarise(&system, settings, &truth)?,
+        exchange: summarise(&system, settings, &truth),
         laws: LawsMeasured {
             reciprocity: laws.reciprocity,
             closure: laws.closure,
@@ -241,9 +250,8 @@ fn estimate_growing(
     let weights = system.etendue();
     let mut total: Option<Estimate> = None;
     let mut points = Vec::new();
-    let mut samples = 1;
-    while samples <= most {
-        let from = total.as_ref().map_or(0, |_| samples / 4);
+    let (mut samples, mut from) = (1, 0);
+    while from < most {
         let share = |done: f64| progress((from as f64 + done * (samples - from) as f64) / most as f64);
         let part = estimate_watched(estimator, from..samples, settings.seed, &share);
         let merged = match total {
@@ -259,7 +267,7 @@ fn estimate_growing(
             });
         }
         total = Some(merged);
-        samples *= 4;
+        (from, samples) = (samples, (4 * samples).min(most));
     }
     let estimate = total.ok_or(StudyError::NoEstimator)?;
     let [reference, mean, variance] =
@@ -318,12 +326,13 @@ fn picture(
 }
 
 /// What the report says of T, the change that its repair made in L included.
-fn summarise(system: &System, settings: &StudySettings, truth: &Block) -> Result<ExchangeSummary, StudyError> {
+fn summarise(system: &System, settings: &StudySettings, truth: &Block) -> ExchangeSummary {
     let report = system.report();
     let unrepaired = system.without_repair();
-    let unrepaired = solver::Cg { tolerance: settings.tolerance }.solve(unrepaired.equation(), &mut ())?;
+    // The unrepaired matrix may create light and then has no steady state: that ends no study.
+    let unrepaired = solver::Cg { tolerance: settings.tolerance }.solve(unrepaired.equation(), &mut ());
     let all: f64 = system.etendue().iter().sum();
-    Ok(ExchangeSummary {
+    ExchangeSummary {
         n_pairs: report.n_pairs,
         n_unoccluded: report.n_clear,
         n_sampled: report.n_sampled,
@@ -332,7 +341,7 @@ fn summarise(system: &System, settings: &StudySettings, truth: &Block) -> Result
         visibility_error: report.visibility_error,
         closure_before_repair: report.closure_before_repair,
         repair_sweeps: report.repair.map_or(0, |repair| repair.sweeps),
-        repair_change: relative_max(&unrepaired.radiance, truth),
+        repair_change: unrepaired.map_or(f64::NAN, |solution| relative_max(&solution.radiance, truth)),
         escaped: system.sinks().column(0).iter().sum::<f64>() / all,
-    })
+    }
 }

@@ -5,6 +5,7 @@
 
 mod cli;
 mod compare;
+mod defects;
 mod equations;
 mod estimator;
 mod exchange;

@@ -3,7 +3,7 @@
 //! Keeps T symmetric and non-negative, which row scaling and additive corrections do not. Source: Sinkhorn (1964); the symmetric
 //! fixed point dᵢ ← √(dᵢ μᵢ / rowᵢ) is Knight, Ruiz and Uçar (2014), "A symmetry preserving algorithm for matrix scaling".
 
-use crate::linalg::{Block, LinearOperator, Matrix};
+use crate::linalg::{Block, LinearOperator, Matrix, worst};
 
 /// Rows closer to μ than this need no further sweep: eight ulp, what summing a row leaves.
 const CLOSED: f64 = 2e-15;
@@ -21,11 +21,27 @@ pub struct Repair {
 /// max |Σⱼ Tᵢⱼ + sinksᵢ − μᵢ| / μᵢ. One product with T.
 pub fn violation(exchange: &Matrix, sinks: &Block, etendue: &[f64]) -> f64 {
     let n = etendue.len();
-    let ones = Block::from_fn(n, 1, |_, _| 1.0);
-    let mut flow = Block::zeros(n, 1);
-    exchange.apply(&ones, &mut flow);
+    let flow = row_sums(exchange);
     let row = |i: usize| flow.get(i, 0) + sinks.row(i).sum::<f64>();
-    (0..n).map(|i| (row(i) / etendue[i] - 1.0).abs()).fold(0.0, f64::max)
+    worst((0..n).map(|i| (row(i) / etendue[i] - 1.0).abs()))
+}
+
+/// The bundle that exchanges most with others over its étendue, if that is more than sampling can explain: a quarter and ten
+/// standard errors.
+pub fn overfull(exchange: &Matrix, etendue: &[f64], variance: &[f64]) -> Option<(usize, f64)> {
+    let flow = row_sums(exchange);
+    let fullness = |i: usize| flow.get(i, 0) / etendue[i];
+    let excess = |i: &usize| fullness(*i) - 1.25 - 10.0 * variance[*i].sqrt() / etendue[*i];
+    let fullest = (0..etendue.len()).max_by(|i, j| excess(i).total_cmp(&excess(j)))?;
+    (excess(&fullest) > 0.0).then(|| (fullest, fullness(fullest)))
+}
+
+/// T 1, n × 1.
+fn row_sums(exchange: &Matrix) -> Block {
+    let n = exchange.n_rows();
+    let mut flow = Block::zeros(n, 1);
+    exchange.apply(&Block::from_fn(n, 1, |_, _| 1.0), &mut flow);
+    flow
 }
 
 /// Scales the exchange and what is lost to sinks (one column a sink) until every row of both sums to its étendue, or until no sweep
@@ -43,15 +59,15 @@ pub fn repair(exchange: &mut Matrix, sinks: &mut Block, etendue: &[f64]) -> (Rep
         exchange.apply(&scale, &mut flow);
         let d = scale.column_mut(0);
         let row = |i: usize, d: f64| d * (flow.get(i, 0) + lost[i]);
-        let worst = (0..n).map(|i| (row(i, d[i]) / etendue[i] - 1.0).abs()).fold(0.0, f64::max);
-        if worst < best {
-            best = worst;
+        let open = worst((0..n).map(|i| (row(i, d[i]) / etendue[i] - 1.0).abs()));
+        if open < best {
+            best = open;
             best_scale.column_mut(0).copy_from_slice(d);
             repair.sweeps = sweep;
-        } else if sweep > 20 && worst < 1e-13 {
+        } else if sweep > 20 && open < 1e-13 {
             break;
         }
-        if worst <= CLOSED {
+        if open <= CLOSED || open.is_nan() {
             break;
         }
         for (i, d) in d.iter_mut().enumerate() {

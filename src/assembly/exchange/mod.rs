@@ -69,7 +69,7 @@ pub enum Occlusion {
 pub struct ExchangeReport {
     /// Pairs of patches that face each other.
     pub n_pairs: usize,
-    /// Of these: proved clear, so right to `tolerance`.
+    /// Of these: proved clear, so right to the quadrature's error.
     pub n_clear: usize,
     /// Of these: proved hidden.
     pub n_hidden: usize,
@@ -97,6 +97,13 @@ pub(super) struct Assembled {
     pub report: ExchangeReport,
 }
 
+/// A bundle that exchanges far more étendue than it has, which only overlapping surfaces do.
+pub(super) struct Overfull {
+    pub bundle: usize,
+    /// What it exchanges over what it has.
+    pub fullness: f64,
+}
+
 /// One facing pair, as its row keeps it until the rows are joined.
 struct Entry {
     column: u32,
@@ -119,7 +126,7 @@ pub(super) fn compute(
     bundles: &Bundles,
     settings: Exchange,
     progress: &(dyn Fn(f64) + Sync),
-) -> Assembled {
+) -> Result<Assembled, Overfull> {
     let polygons: Vec<&Polygon> = (0..scene.facets().len()).map(|facet| scene.polygon(facet)).collect();
     let occluders = Tracer::occluders(&polygons);
     let everything = Tracer::new(&polygons);
@@ -171,19 +178,26 @@ pub(super) fn compute(
     report.n_sampled = report.n_pairs - report.n_clear - report.n_hidden - report.n_integrated;
     let relative: f64 = variance.iter().zip(etendue).map(|(v, mu)| v / (mu * mu)).sum();
     report.visibility_error = (relative / n.max(1) as f64).sqrt();
-    let upper: Vec<Vec<(u32, f64)>> =
-        rows.into_iter().map(|(row, _)| row.into_iter().map(|entry| (entry.column, entry.value)).collect()).collect();
+    let upper: Vec<Vec<(u32, f64)>> = rows
+        .into_iter()
+        .map(|(row, _)| {
+            row.into_iter().filter(|entry| entry.value > 0.0).map(|entry| (entry.column, entry.value)).collect()
+        })
+        .collect();
     let mut exchange = Matrix::symmetric(&upper);
     drop(upper);
 
     report.closure_before_repair = closure::violation(&exchange, &sinks, etendue);
+    if let Some((bundle, fullness)) = closure::overfull(&exchange, etendue, &variance) {
+        return Err(Overfull { bundle, fullness });
+    }
     let mut repair_scale = Vec::new();
     if settings.repair {
         let (repair, scale) = closure::repair(&mut exchange, &mut sinks, etendue);
         (report.repair, repair_scale) = (Some(repair), scale);
     }
     progress(1.0);
-    Assembled { exchange, sinks, repair_scale, report }
+    Ok(Assembled { exchange, sinks, repair_scale, report })
 }
 
 /// The pairs (i, j), j > i, that exchange anything.

@@ -56,8 +56,14 @@ pub fn blocked(a: &Polygon, b: &Polygon, occluders: &[&[Vec3]], tolerance: f64) 
             cells = cells.into_iter().flat_map(|cell| split(cell, line)).collect();
         }
     }
-    let mut view =
-        View { normal, target: &target, occluders: &between, pieces: Pieces::default(), spare: Pieces::default() };
+    let mut view = View {
+        normal,
+        target: &target,
+        occluders: &between,
+        pieces: Pieces::default(),
+        spare: Pieces::default(),
+        scratch: Default::default(),
+    };
     let area: f64 = cells.iter().map(|cell| area_of(cell)).sum();
     let (mut sum, mut error) = (0.0, 0.0);
     for cell in &cells {
@@ -114,6 +120,7 @@ struct View<'a> {
     occluders: &'a [Vec<Vec3>],
     pieces: Pieces,
     spare: Pieces,
+    scratch: [Vec<Vec3>; 2],
 }
 
 impl View<'_> {
@@ -126,7 +133,7 @@ impl View<'_> {
         for occluder in self.occluders {
             self.spare.clear();
             for piece in self.pieces.iter() {
-                cut_away(piece, occluder, x, &mut self.spare);
+                cut_away(piece, occluder, x, &mut self.spare, &mut self.scratch);
             }
             std::mem::swap(&mut self.pieces, &mut self.spare);
         }
@@ -174,7 +181,7 @@ impl View<'_> {
 }
 
 /// Pushes what is left of `piece` (corners relative to x) outside the pyramid with apex x over the occluder.
-fn cut_away(piece: &[Vec3], occluder: &[Vec3], x: Vec3, out: &mut Pieces) {
+fn cut_away(piece: &[Vec3], occluder: &[Vec3], x: Vec3, out: &mut Pieces, scratch: &mut [Vec<Vec3>; 2]) {
     // The pyramid is inside all planes through x and an edge; turn them to its inside.
     let corner = |k: usize| occluder[k % occluder.len()] - x;
     let volume: f64 = (1..occluder.len() - 1).map(|k| corner(0).dot(corner(k).cross(corner(k + 1)))).sum();
@@ -196,44 +203,34 @@ fn cut_away(piece: &[Vec3], occluder: &[Vec3], x: Vec3, out: &mut Pieces) {
     }
 
     // Cut off what is outside each plane in turn; what is inside all of them is hidden.
-    let mut rest: [Vec3; CORNERS] = [Vec3::ZERO; CORNERS];
-    let mut n_rest = piece.len().min(CORNERS);
-    rest[..n_rest].copy_from_slice(&piece[..n_rest]);
+    let [rest, inside] = scratch;
+    rest.clear();
+    rest.extend_from_slice(piece);
     for k in 0..occluder.len() {
         let normal = plane(k);
-        let mut inside: [Vec3; CORNERS] = [Vec3::ZERO; CORNERS];
-        let mut n_inside = 0;
-        let mut keep = |v: Vec3| {
-            if n_inside < CORNERS {
-                inside[n_inside] = v;
-                n_inside += 1;
-            }
-        };
-        for i in 0..n_rest {
-            let (from, to) = (rest[i], rest[(i + 1) % n_rest]);
+        inside.clear();
+        for (i, &from) in rest.iter().enumerate() {
+            let to = rest[(i + 1) % rest.len()];
             let (h, next) = (normal.dot(from), normal.dot(to));
             if h >= 0.0 {
-                keep(from);
+                inside.push(from);
             }
             if h <= 0.0 {
                 out.corners.push(from);
             }
             if (h > 0.0 && next < 0.0) || (h < 0.0 && next > 0.0) {
                 let crossing = from + (h / (h - next)) * (to - from);
-                keep(crossing);
+                inside.push(crossing);
                 out.corners.push(crossing);
             }
         }
         out.close();
-        if n_inside < 3 {
+        if inside.len() < 3 {
             return;
         }
-        (rest, n_rest) = (inside, n_inside);
+        std::mem::swap(rest, inside);
     }
 }
-
-/// Corners that a piece can have: a cut adds one at most, and each occluder makes at most its number of cuts in a row.
-const CORNERS: usize = 32;
 
 /// A line in a plane, as the plane through it: signed distances are normal·p − offset.
 type Line = (Vec3, f64);

@@ -49,6 +49,12 @@ fn walks(outcome: &StudyOutcome) -> Option<String> {
 fn refinement(outcome: &StudyOutcome) -> Option<String> {
     let study = &outcome.refinement;
     let finest = study.levels.last()?;
+    if study.levels.len() < 2 {
+        let apart = percent(finest.error);
+        return Some(format!(
+            "the path tracer, which knows no patches, differs by {apart}; one mesh alone tells no discretisation error"
+        ));
+    }
     let agreement = if study.agrees { "within" } else { "more than" };
     let order = if study.observed_order.is_finite() {
         format!(

@@ -31,7 +31,19 @@ fn the_object_has_every_field_in_its_shape() {
     let object = solve(&["cornell-box", "--patch-size", "1"]);
     assert_fields(
         &object,
-        &["schema", "scene", "n_bundles", "n_bands", "bands", "bundles", "laws", "report", "notes", "provenance"],
+        &[
+            "schema",
+            "scene",
+            "n_bundles",
+            "n_bands",
+            "bands",
+            "bundles",
+            "laws",
+            "exchange",
+            "report",
+            "notes",
+            "provenance",
+        ],
     );
     assert_eq!(object["schema"], "etendue.solve/1");
     assert_eq!((&object["scene"], &object["bands"]), (&json!("cornell-box"), &json!(["red", "green", "blue"])));
