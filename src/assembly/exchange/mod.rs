@@ -6,12 +6,14 @@
 mod clip;
 mod closure;
 mod contour;
+mod point;
 mod quadrature;
 mod rules;
 mod sinks;
 mod visibility;
 
 pub use closure::Repair;
+pub use point::{point_factor, point_factors};
 
 use crate::basis::{Bundles, Patch};
 use crate::geometry::{Polygon, Tracer};
