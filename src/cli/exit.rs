@@ -67,7 +67,22 @@ macro_rules! exits_with {
 }
 
 exits_with!(Exit::Input, BasisError, AssemblyError, EstimatorError);
-exits_with!(Exit::NotConverged, SolveError);
+
+/// What stands behind most equations that cannot be solved.
+pub const NO_STEADY_STATE: &str =
+    "light that nothing absorbs has no steady state: is the scene closed, and as good as white?";
+
+impl From<SolveError> for Failure {
+    fn from(error: SolveError) -> Self {
+        let hint = match error {
+            SolveError::Factor { .. } | SolveError::Diverged { .. } | SolveError::NotPositiveDefinite { .. } => {
+                format!("\n  = {NO_STEADY_STATE}")
+            }
+            _ => String::new(),
+        };
+        Self::new(Exit::NotConverged, error.to_string() + &hint)
+    }
+}
 
 impl From<ReportError> for Failure {
     fn from(error: ReportError) -> Self {
@@ -115,7 +130,9 @@ pub fn catch(run: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
     let default = std::panic::take_hook();
     std::panic::set_hook(Box::new(|panic| {
         let place = panic.location().map(|l| format!("{}:{}", l.file(), l.line())).unwrap_or_default();
-        output::error(&format!("internal error at {place}: {}", panic.payload_as_str().unwrap_or("unknown")));
+        let said = panic.payload().downcast_ref::<&str>().copied();
+        let said = said.or_else(|| panic.payload().downcast_ref::<String>().map(String::as_str));
+        output::error(&format!("internal error at {place}: {}", said.unwrap_or("unknown")));
     }));
     let result = catch_unwind(AssertUnwindSafe(run));
     std::panic::set_hook(default);

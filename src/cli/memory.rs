@@ -50,6 +50,9 @@ impl fmt::Display for Bytes {
     }
 }
 
+/// Bytes that the program takes before it has a scene, and that its threads take to run.
+const PROGRAM: u64 = 16 << 20;
+
 /// Refuses what would take more than is allowed, and says what would not.
 pub fn check(
     scene: &Scene,
@@ -57,6 +60,7 @@ pub fn check(
     allowed: Bytes,
     needed: impl Fn(usize) -> u64,
 ) -> Result<Demand, Failure> {
+    let needed = |n: usize| needed(n).saturating_add(PROGRAM);
     let n_bundles = match Bundles::count(scene, resolution) {
         Err(BasisError::TooMany { n_patches, .. }) => n_patches,
         count => count?,
@@ -70,8 +74,8 @@ pub fn check(
         count.is_ok_and(|n| Bytes(needed(n)) <= allowed)
     };
     let remedy = match finest_that_fits(resolution.patch_size, fits) {
-        Some(patch_size) => format!("--patch-size {patch_size} would fit; --memory allows more, e.g. --memory 16GiB"),
-        None => "no --patch-size would fit; --memory allows more, e.g. --memory 16GiB".to_string(),
+        Some(patch_size) => format!("--patch-size {patch_size} would fit; --memory SIZE allows more"),
+        None => "no --patch-size would fit; --memory SIZE allows more".to_string(),
     };
     let (patch_size, bytes) = (resolution.patch_size, demand.bytes);
     Err(Failure::new(
@@ -106,11 +110,11 @@ fn finest_that_fits(too_small: f64, fits: impl Fn(f64) -> bool) -> Option<f64> {
         if fits(middle) { above = middle } else { below = middle }
     }
 
-    // Round up: coarser still fits.
+    // Round to nearest where that still fits, else up.
     let digits = (1.0 - above.log10().floor()).clamp(0.0, 30.0) as usize;
-    let scale = 10f64.powi(digits as i32);
-    let rounded = format!("{:.digits$}", (above * scale).ceil() / scale).parse().ok()?;
-    fits(rounded).then_some(rounded)
+    let up = above + 0.5 * 10f64.powi(-(digits as i32));
+    let rounded = [above, up].map(|size| format!("{size:.digits$}").parse::<f64>());
+    rounded.into_iter().flatten().find(|size| fits(*size))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! `etendue study`: the main job.
 
 use super::arguments::{Arguments, Study};
-use super::exit::{Exit, Failure};
+use super::exit::Failure;
 use super::output;
 use super::progress::Bars;
 use super::provenance::provenance;
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 const SIGNIFICANCE: f64 = 1e-6;
 
 /// Bounces shown one by one.
-const N_BOUNCES: usize = 6;
+const N_BOUNCES: usize = 5;
 
 pub fn run(arguments: &Arguments, study: &Study, command: Vec<String>) -> Result<(), Failure> {
     let chosen = choose(&study.scene, |scene, n| study::memory_estimate(scene, n, N_BOUNCES))?;
@@ -54,11 +54,10 @@ pub fn run(arguments: &Arguments, study: &Study, command: Vec<String>) -> Result
     let artifacts = report::render(&outcome)?;
     report::write_whole(&folder, &artifacts)?;
     if arguments.json {
+        // As written, and not parsed and written again: every digit counts.
         let json = artifacts.iter().find(|artifact| artifact.name == "report.json");
-        let bytes = json.map(|artifact| artifact.bytes.as_slice()).unwrap_or_default();
-        let object: serde_json::Value =
-            serde_json::from_slice(bytes).map_err(|e| Failure::new(Exit::Internal, e.to_string()))?;
-        return output::print(&format!("{object}\n"));
+        let text = json.map(|artifact| String::from_utf8_lossy(&artifact.bytes)).unwrap_or_default();
+        return output::print(&format!("{}\n", text.trim_end()));
     }
     if arguments.quiet { Ok(()) } else { output::print(&summary(&outcome, &folder)) }
 }
@@ -87,9 +86,10 @@ fn describe(settings: &StudySettings) -> [(&'static str, String); 7] {
 fn summary(outcome: &StudyOutcome, folder: &Path) -> String {
     let mut text = format!("{:14} {:>9} {:>10} {:>10} {:>10}\n", "solver", "products", "seconds", "residual", "error");
     for run in &outcome.solvers {
+        let products = if run.kind == "direct" { "–".to_string() } else { format!("{:.1}", run.products) };
         text += &format!(
-            "{:14} {:>9.1} {:>10.3} {:>10.1e} {:>10.1e}  {}\n",
-            run.solver, run.products, run.seconds, run.true_residual, run.error, run.stop
+            "{:14} {products:>9} {:>10.3} {:>10.1e} {:>10.1e}  {}\n",
+            run.solver, run.seconds, run.true_residual, run.error, run.stop
         );
     }
     text += &format!("\n{:26} {:>9} {:>10} {:>10} {:>10}\n", "estimator", "slope", "seconds", "worst |z|", "p");
@@ -101,9 +101,12 @@ fn summary(outcome: &StudyOutcome, folder: &Path) -> String {
         );
     }
     let refinement = &outcome.refinement;
+    let order = match refinement.observed_order {
+        order if order.is_nan() => "no order observed".to_string(),
+        order => format!("order {order:.2}"),
+    };
     text += &format!(
-        "\nmatrix against path tracer: order {:.2}, finest mesh within {:.2} % of the continuous truth, surface means {}\n",
-        refinement.observed_order,
+        "\nmatrix against path tracer: {order}, finest mesh within {:.2} % of the continuous truth, surface means {}\n",
         100.0 * refinement.finest_error,
         if refinement.agrees { "agree" } else { "DISAGREE" }
     );

@@ -102,8 +102,9 @@ impl Polygon {
     /// unit square; other polygons are fans of triangles chosen by area.
     pub fn sample(&self, mut u: [f64; 2]) -> Vec3 {
         let v = &self.vertices;
+        let largest = |v: Vec3| v.abs().max_element();
         if let [a, b, c, d] = v[..]
-            && (a - b + c - d).abs().max_element() <= 1e-14 * (c - a).abs().max_element()
+            && largest(a - b + c - d) <= 1e-14 * largest(c - a) + 8.0 * f64::EPSILON * (largest(a) + largest(c))
         {
             return a + u[0] * (b - a) + u[1] * (d - a);
         }

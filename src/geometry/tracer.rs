@@ -173,7 +173,7 @@ impl Tracer {
     }
 
     /// Corners of a polygon, by handle.
-    pub(super) fn corners_of(&self, handle: u32) -> &[Vec3] {
+    pub fn corners_of(&self, handle: u32) -> &[Vec3] {
         &self.shapes[handle as usize].vertices
     }
 
@@ -227,24 +227,32 @@ fn round_up(t: f64) -> f32 {
 #[derive(Clone, Copy)]
 struct Probe {
     ray: Ray,
-    /// The second point of the ray's line: it stands for the direction wherever a sign must be exact.
+    /// The direction, lengthened or shortened by a power of two to the size of the scene.
+    along: Vec3,
+    /// The second point of the ray's line, origin + along: it stands for the direction wherever a sign must be exact.
     beyond: Vec3,
-    /// What rounding can have done to d · (a × b), a and b the corners of any polygon of the scene as seen from the origin.
+    /// What rounding can have done to along · (a × b), a and b the corners of any polygon of the scene as seen from the origin.
     doubt: f64,
 }
 
 impl Tracer {
     fn probe(&self, ray: &Ray) -> Probe {
-        let beyond = ray.origin + ray.direction;
         let largest = |v: Vec3| v.abs().max_element();
-        // Corners are at most `reach` away, and off by an ulp of their coordinates; `beyond` is off by an ulp of its own.
+        // Stretch the direction exactly, so that the line's second point is rounded no worse than the corners are.
         let reach = self.radius + largest(ray.origin - self.centre);
+        let along = ray.direction * power_of_two_below(reach / largest(ray.direction));
+        let beyond = ray.origin + along;
+        // Corners are at most `reach` away, and off by an ulp of their coordinates; `beyond` is off by an ulp of its own.
         let coordinates = reach + largest(self.centre) + largest(ray.origin);
-        let direction = largest(ray.direction);
-        let doubt =
-            32.0 * f64::EPSILON * reach * (reach * (direction + largest(beyond)) + 2.0 * coordinates * direction);
-        Probe { ray: *ray, beyond, doubt }
+        let length = largest(along);
+        let doubt = 32.0 * f64::EPSILON * reach * (reach * (length + largest(beyond)) + 2.0 * coordinates * length);
+        Probe { ray: *ray, along, beyond, doubt }
     }
+}
+
+/// The largest power of two not above x, for normal x > 0: x without the digits of its mantissa.
+fn power_of_two_below(x: f64) -> f64 {
+    f64::from_bits(x.to_bits() & f64::INFINITY.to_bits())
 }
 
 impl Shape {
@@ -263,7 +271,7 @@ impl Shape {
         let mut a = from - ray.origin;
         for to in &self.vertices {
             let b = *to - ray.origin;
-            let mut side = ray.direction.dot(a.cross(b));
+            let mut side = probe.along.dot(a.cross(b));
             if side.abs() <= probe.doubt {
                 side = exact_side(probe, from, *to);
             }

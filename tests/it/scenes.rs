@@ -13,6 +13,7 @@ pub struct Case {
     pub entry: &'static Entry,
     pub scene: Scene,
     pub bundles: Bundles,
+    pub settings: Exchange,
     pub system: System,
 }
 
@@ -28,7 +29,7 @@ impl Case {
         let scene = (entry.build)();
         let bundles = Bundles::new(&scene, Resolution { patch_size, n_directions: 1 }).unwrap();
         let system = assemble(&scene, &bundles, settings).unwrap();
-        Self { entry, scene, bundles, system }
+        Self { entry, scene, bundles, settings, system }
     }
 }
 

@@ -286,3 +286,25 @@ fn a_box_on_the_floor_is_in_the_planes_it_stands_on() {
     let above = Vec3::new(1.5, 1.5, 1.0);
     assert!(tracer.occluded(ray.origin, above, [0, 0]) && !tracer.occluded(ray.origin, above, [1, 2]));
 }
+
+/// A point of every direction's own length: results depend on the line, not on how long its direction is written.
+#[test]
+fn the_length_of_a_direction_does_not_matter() {
+    let mut stream = Stream::new(0x6c65_6e67, 0, 0);
+    let soup: Vec<Polygon> = (0..60).map(|_| random_polygon(&mut stream, 1.0, 0.4)).collect();
+    for size in [1e-6, 1.0, 1e9] {
+        let scaled = mapped(&soup, |v| v * size);
+        let tracer = tracer_of(&scaled);
+        for _ in 0..2_000 {
+            let origin = size * point(&mut stream, 1.2);
+            let direction = point(&mut stream, 1.0);
+            // Powers of two: the very same line.
+            let hits = [-100, -30, 0, 30, 100].map(|exponent| {
+                let stretch = f64::powi(2.0, exponent);
+                let hit = tracer.closest(&Ray { origin, direction: direction * stretch }, None);
+                hit.map(|hit| (hit.polygon, hit.front, (hit.t * stretch).to_bits()))
+            });
+            assert!(hits.iter().all(|hit| *hit == hits[0]), "{origin} {direction}: {hits:?}");
+        }
+    }
+}

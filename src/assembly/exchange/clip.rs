@@ -48,3 +48,46 @@ fn height(origin: Vec3, normal: Vec3, point: Vec3) -> f64 {
     let rounding = 16.0 * f64::EPSILON * (point.abs().max_element() + origin.abs().max_element() + offset.length());
     if height.abs() <= rounding { 0.0 } else { height }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::Stream;
+
+    #[test]
+    fn the_parts_on_either_side_make_the_whole() {
+        let mut stream = Stream::new(0x636c_6970, 0, 0);
+        let mut point = || Vec3::from_array(std::array::from_fn(|_| 2.0 * stream.uniform() - 1.0));
+        let area = |part: Half, whole: &Polygon| match part {
+            Half::Behind => 0.0,
+            Half::InFront => whole.area(),
+            // A sliver that is no polygon has no area to speak of.
+            Half::Part(part) => Polygon::new(part).map_or(0.0, |part| part.area()),
+        };
+        let mut n_cut = 0;
+        for _ in 0..2_000 {
+            let polygons = [(); 2].map(|()| Polygon::new(vec![point(), point(), point()]));
+            let [Ok(whole), Ok(plane)] = polygons else { continue };
+            let front = in_front_of(whole.vertices(), &plane);
+            n_cut += usize::from(matches!(front, Half::Part(_)));
+            let sum = area(front, &whole) + area(in_front_of(whole.vertices(), &plane.flipped()), &whole);
+            // New corners are rounded: some ulp of the coordinates times the perimeter.
+            assert!((sum - whole.area()).abs() < 1e-13, "{sum} for {}", whole.area());
+        }
+        assert!(n_cut > 500, "{n_cut}");
+    }
+
+    #[test]
+    fn what_lies_in_the_plane_is_on_neither_side_of_it() {
+        let square =
+            |z: f64| [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| Vec3::new(x, y, z)).to_vec();
+        let plane = Polygon::new(square(0.3)).unwrap();
+        assert_eq!(in_front_of(&square(0.3), &plane), Half::Behind);
+        assert_eq!(in_front_of(&square(0.3 + 1e-17), &plane), Half::Behind);
+        assert_eq!(in_front_of(&square(0.3 + 1e-12), &plane), Half::InFront);
+        assert_eq!(in_front_of(&square(0.3 - 1e-12), &plane), Half::Behind);
+        // Touching by an edge is in front, not cut.
+        let leaning = [Vec3::new(0.0, 0.0, 0.3), Vec3::new(1.0, 0.0, 0.3), Vec3::new(0.5, 0.5, 0.9)];
+        assert_eq!(in_front_of(&leaning, &plane), Half::InFront);
+    }
+}

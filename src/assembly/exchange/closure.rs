@@ -71,3 +71,52 @@ pub fn repair(exchange: &mut Matrix, sinks: &mut Block, etendue: &[f64]) -> (Rep
     }
     (repair, d.to_vec())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::Stream;
+
+    /// A closed system with noise of a few per cent on every entry is closed again, and stays symmetric.
+    #[test]
+    fn noisy_rows_are_closed_by_one_diagonal() {
+        let n = 40;
+        let mut stream = Stream::new(0x636c_6f73, 0, 0);
+        // T = a aᵀ + lost a: rows sum to a (Σ a + lost).
+        let a: Vec<f64> = (0..n).map(|_| 0.5 + stream.uniform()).collect();
+        let (total, lost): (f64, f64) = (a.iter().sum(), 3.0);
+        let etendue: Vec<f64> = a.iter().map(|a| a * (total + lost)).collect();
+        let upper: Vec<Vec<(u32, f64)>> = (0..n)
+            .map(|i| (i..n).map(|j| (j as u32, a[i] * a[j] * (1.0 + 0.1 * (stream.uniform() - 0.5)))).collect())
+            .collect();
+        let raw = Matrix::symmetric(&upper);
+        let raw_sinks = Block::from_fn(n, 2, |i, _| 0.5 * lost * a[i]);
+        let (mut exchange, mut sinks) = (raw.clone(), raw_sinks.clone());
+        assert!(violation(&exchange, &sinks, &etendue) > 1e-3);
+
+        let (repair, scale) = repair(&mut exchange, &mut sinks, &etendue);
+        // A row of forty terms in f64.
+        assert!(repair.after < 1e-14 && violation(&exchange, &sinks, &etendue) < 1e-14, "{repair:?}");
+        let strongest = scale.iter().map(|d| (d - 1.0).abs()).fold(0.0, f64::max);
+        assert!(repair.strongest == strongest && strongest > 1e-4 && strongest < 0.05, "{repair:?}");
+        let (mut row, mut column, mut before) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        for i in 0..n {
+            exchange.row(0, i, &mut row);
+            exchange.column(0, i, &mut column);
+            raw.row(0, i, &mut before);
+            assert_eq!(row, column);
+            assert!((0..n).all(|j| row[j] == before[j] * (scale[i] * scale[j])));
+            assert_eq!(sinks.get(i, 0), raw_sinks.get(i, 0) * scale[i]);
+        }
+    }
+
+    #[test]
+    fn closed_rows_are_left_alone() {
+        let upper = vec![vec![(1, 0.75)], vec![]];
+        let (mut exchange, mut sinks) = (Matrix::symmetric(&upper), Block::from_fn(2, 2, |_, sink| 0.25 * sink as f64));
+        let (repair, scale) = repair(&mut exchange, &mut sinks, &[1.0, 1.0]);
+        assert_eq!(repair, Repair { after: 0.0, sweeps: 0, strongest: 0.0 });
+        assert_eq!(scale, [1.0, 1.0]);
+        assert_eq!(exchange, Matrix::symmetric(&upper));
+    }
+}

@@ -10,7 +10,7 @@
 //! Source: Sparrow (1963), "A new and simpler formulation for radiative angle factors", eq. 9. Cost: O(edges²) nodes, some 10 to
 //! 500 µs.
 
-use super::rules::{Rule, TANH_SINH, gauss_legendre};
+use super::rules::{EndNode, Rule, TANH_SINH, gauss_legendre};
 use crate::geometry::Vec3;
 use std::sync::LazyLock;
 
@@ -58,34 +58,61 @@ pub fn exchange(a: &[Vec3], b: &[Vec3]) -> (f64, f64) {
             let (from, piece) = (start + pair[0] * length * tangent, (pair[1] - pair[0]) * length);
             let to = start + pair[1] * length * tangent;
             let clearance = facing.iter().map(|e| e.distance_to(from, to)).fold(f64::INFINITY, f64::min);
-            let (mut fine, mut coarse, mut size) = (0.0, 0.0, 0.0);
-            if clearance > piece {
-                for (s, w) in GAUSS[1].nodes.iter().zip(&GAUSS[1].weights) {
-                    let (value, terms) = inner(from + s * piece * tangent);
-                    fine += w * value;
-                    size += w * terms;
-                }
-                let coarser = GAUSS[0].nodes.iter().zip(&GAUSS[0].weights);
-                coarse = coarser.map(|(s, w)| w * inner(from + s * piece * tangent).0).sum();
+            let along = |s: f64| inner(from + s * piece * tangent);
+            let (value, left) = if clearance > piece {
+                gauss(along)
             } else {
                 // Step from the nearer end, so that nodes crowd an end without rounding onto it.
-                for ((low, high, weight), even) in TANH_SINH.fine.iter().zip(&TANH_SINH.coarse_is_even) {
-                    let x = if low < high { from + low * piece * tangent } else { to - high * piece * tangent };
-                    let (value, terms) = inner(x);
-                    fine += weight * value;
-                    size += weight * terms;
-                    coarse += if *even { 2.0 * weight * value } else { 0.0 };
-                }
-            }
-            sum += piece * fine;
-            // Doubling the nodes squares the relative error, but for a power of 3/2 where another edge passes close by an end. Keep an
-            // ulp or so of every term for rounding.
-            let change = (fine - coarse).abs();
-            let left = if change < fine.abs() { change * (change / fine.abs()).sqrt() } else { change };
-            error += piece * (left + ROUNDING * size);
+                let near_an_end = |node: &EndNode| {
+                    if node.low < node.high { along(node.low) } else { inner(to - node.high * piece * tangent) }
+                };
+                tanh_sinh(near_an_end)
+            };
+            sum += piece * value;
+            error += piece * left;
         }
     }
     ((0.5 * sum).max(0.0) * scale * scale, 0.5 * error * scale * scale)
+}
+
+/// ∫₀¹ of the first of the pair by Gauss, and what may be left of it; the second is the size of the terms that cancel in the first.
+fn gauss(integrand: impl Fn(f64) -> (f64, f64)) -> (f64, f64) {
+    let [coarse, fine] = &*GAUSS;
+    let apply = |rule: &Rule| {
+        rule.nodes.iter().zip(&rule.weights).fold((0.0, 0.0), |(sum, size), (s, w)| {
+            let (value, terms) = integrand(*s);
+            (sum + w * value, size + w * terms)
+        })
+    };
+    let ((rough, _), (value, size)) = (apply(coarse), apply(fine));
+    (value, left_after((value - rough).abs(), value) + ROUNDING * size)
+}
+
+/// The same by tanh-sinh, its step halved until no more than rounding is left.
+fn tanh_sinh(integrand: impl Fn(&EndNode) -> (f64, f64)) -> (f64, f64) {
+    let (mut value, mut size, mut left) = (0.0, 0.0, f64::INFINITY);
+    for (level, nodes) in TANH_SINH.iter().enumerate() {
+        let rough = value;
+        let (added, terms) = nodes.iter().fold((0.0, 0.0), |(sum, size), node| {
+            let (value, terms) = integrand(node);
+            (sum + node.weight * value, size + node.weight * terms)
+        });
+        if level == 0 {
+            (value, size) = (added, terms);
+            continue;
+        }
+        (value, size) = (0.5 * value + added, 0.5 * size + terms);
+        left = left_after((value - rough).abs(), value);
+        if left <= ROUNDING * size {
+            break;
+        }
+    }
+    (value, left + ROUNDING * size)
+}
+
+/// Doubling the nodes squares the relative error, but for a power of 3/2 where another edge passes close by an end.
+fn left_after(change: f64, value: f64) -> f64 {
+    if change < value.abs() { change * (change / value.abs()).sqrt() } else { change }
 }
 
 /// One edge of the inner contour.

@@ -6,9 +6,11 @@
 mod clip;
 mod closure;
 mod contour;
+mod lambert;
 mod point;
 mod quadrature;
 mod rules;
+mod shadow;
 mod sinks;
 mod visibility;
 
@@ -30,6 +32,8 @@ use visibility::{End, Visibility};
 pub struct Exchange {
     /// Relative tolerance of unoccluded pairs.
     pub tolerance: f64,
+    /// How partly visible pairs are computed.
+    pub occlusion: Occlusion,
     /// Rays a pair whose visibility geometry does not settle.
     pub visibility_rays: usize,
     /// Rays a patch that count what it loses to sinks.
@@ -42,8 +46,24 @@ pub struct Exchange {
 
 impl Default for Exchange {
     fn default() -> Self {
-        Self { tolerance: 1e-10, visibility_rays: 64, sink_rays: 4096, seed: 0x00e7_e2d0_e000_0001, repair: true }
+        Self {
+            tolerance: 1e-10,
+            occlusion: Occlusion::Sampled,
+            visibility_rays: 64,
+            sink_rays: 4096,
+            seed: 0x00e7_e2d0_e000_0001,
+            repair: true,
+        }
     }
+}
+
+/// How the exchange of a partly visible pair is computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Occlusion {
+    /// By rays: fast, with a standard error.
+    Sampled,
+    /// By the exact visible part from every point of an adaptive quadrature, to this absolute error of Tᵢⱼ / min(μᵢ, μⱼ).
+    Exact { tolerance: f64 },
 }
 
 /// How the entries of T came about.
@@ -55,6 +75,8 @@ pub struct ExchangeReport {
     pub n_clear: usize,
     /// Of these: proved hidden.
     pub n_hidden: usize,
+    /// Of these: what is blocked integrated.
+    pub n_integrated: usize,
     /// Of these: visibility sampled by rays.
     pub n_sampled: usize,
     /// Largest quadrature error estimate relative to the pair's T.
@@ -89,6 +111,7 @@ struct Tally {
     n_pairs: usize,
     n_clear: usize,
     n_hidden: usize,
+    n_integrated: usize,
     quadrature_error: f64,
 }
 
@@ -103,6 +126,7 @@ pub(super) fn compute(
     let occluders = Tracer::occluders(&polygons);
     let everything = Tracer::new(&polygons);
     let patches: Vec<&Patch> = (0..bundles.elements().len()).filter_map(|e| bundles.patch(e)).collect();
+    let etendue = bundles.etendue();
     let ladder = Ladder::new();
     let nodes: Vec<Nodes> = patches.par_iter().map(|patch| ladder.nodes(&patch.polygon)).collect();
 
@@ -113,7 +137,7 @@ pub(super) fn compute(
         .into_par_iter()
         .with_max_len(1)
         .map(|i| {
-            let row = upper_row(&patches, &nodes, &occluders, settings, i);
+            let row = upper_row(&patches, (&ladder, &nodes), etendue, &occluders, settings, i);
             let finished = done.fetch_add(n - i, Ordering::Relaxed) + (n - i);
             progress(0.95 * finished as f64 / (0.5 * (n * (n + 1)) as f64));
             row
@@ -125,11 +149,10 @@ pub(super) fn compute(
         .par_iter()
         .enumerate()
         .map(|(i, patch)| {
-            let end = End { polygon: &patch.polygon, facet: patch.facet };
+            let end = End { polygon: &patch.polygon, facet: patch.facet, etendue: etendue[i] };
             sinks::lost_from(scene, &everything, end, settings.sink_rays, mix(&[settings.seed, 1, i as u64]))
         })
         .collect();
-    let etendue = bundles.etendue();
     let mut sinks =
         Block::from_fn(n, 2, |i, sink| etendue[i] * if sink == 0 { lost[i].escaped } else { lost[i].darkened });
 
@@ -140,13 +163,14 @@ pub(super) fn compute(
         report.n_pairs += tally.n_pairs;
         report.n_clear += tally.n_clear;
         report.n_hidden += tally.n_hidden;
+        report.n_integrated += tally.n_integrated;
         report.quadrature_error = report.quadrature_error.max(tally.quadrature_error);
         for entry in row {
             variance[i] += entry.variance;
             variance[entry.column as usize] += entry.variance;
         }
     }
-    report.n_sampled = report.n_pairs - report.n_clear - report.n_hidden;
+    report.n_sampled = report.n_pairs - report.n_clear - report.n_hidden - report.n_integrated;
     let relative: f64 = variance.iter().zip(etendue).map(|(v, mu)| v / (mu * mu)).sum();
     report.visibility_error = (relative / n.max(1) as f64).sqrt();
     let upper: Vec<Vec<(u32, f64)>> =
@@ -167,7 +191,8 @@ pub(super) fn compute(
 /// The pairs (i, j), j > i, that exchange anything.
 fn upper_row(
     patches: &[&Patch],
-    nodes: &[Nodes],
+    (ladder, nodes): (&Ladder, &[Nodes]),
+    etendue: &[f64],
     occluders: &Tracer,
     settings: Exchange,
     i: usize,
@@ -180,19 +205,27 @@ fn upper_row(
         if occluders.coplanar(a.facet, b.facet) {
             continue;
         }
-        let pair = quadrature::unoccluded((&a.polygon, &nodes[i]), (&b.polygon, &nodes[j]), settings.tolerance);
+        let pair = quadrature::unoccluded(ladder, (&a.polygon, &nodes[i]), (&b.polygon, &nodes[j]), settings.tolerance);
         let Some((exchange, error)) = pair else { continue };
         tally.n_pairs += 1;
         tally.quadrature_error = tally.quadrature_error.max(error / exchange);
 
         let key = mix(&[settings.seed, 0, i as u64, j as u64]);
-        let ends = (End { polygon: &a.polygon, facet: a.facet }, End { polygon: &b.polygon, facet: b.facet });
-        match visibility::between(occluders, ends.0, ends.1, settings.visibility_rays, key) {
+        let ends =
+            [(a, i), (b, j)].map(|(patch, k)| End { polygon: &patch.polygon, facet: patch.facet, etendue: etendue[k] });
+        match visibility::between(occluders, ends[0], ends[1], settings.occlusion, settings.visibility_rays, key) {
             Visibility::Full => {
                 tally.n_clear += 1;
                 row.push(Entry { column: j as u32, value: exchange, variance: 0.0 });
             }
             Visibility::None => tally.n_hidden += 1,
+            Visibility::Integrated { blocked, error } => {
+                tally.n_integrated += 1;
+                let value = (exchange - blocked).max(0.0);
+                if value > 0.0 {
+                    row.push(Entry { column: j as u32, value, variance: error * error });
+                }
+            }
             Visibility::Sampled { share, variance } => {
                 let variance = variance * exchange * exchange;
                 row.push(Entry { column: j as u32, value: share * exchange, variance });

@@ -1,18 +1,13 @@
 //! The share of what a point takes in that comes from a polygon: form factors of an element of no size.
 //!
-//! ```text
-//! F = (1/π) ∫ cosθ dω = (1/2π) Σ θₖ n · (vₖ × vₖ₊₁) / |vₖ × vₖ₊₁|
-//! ```
-//!
-//! over the edges of the polygon cut off at the point's horizon, vₖ its corners as seen from the point and θₖ the angle that an edge
-//! subtends. Source: Lambert (1760), Photometria; Baum, Rushmeier and Winget (1989), eq. 4. Cost O(corners).
+//! The polygon is cut off at the point's horizon and summed by Lambert's formula. Cost O(corners).
 //!
 //! Nothing is looked for that might stand between: that the polygon is seen is the caller's to know.
 
 use super::clip::{Half, above};
+use super::lambert::form_factor;
 use crate::basis::Bundles;
 use crate::geometry::{Polygon, Vec3};
-use std::f64::consts::TAU;
 
 /// F from a point with this unit normal to the front of a polygon; zero where the point is behind the polygon, or in its plane.
 pub fn point_factor(point: Vec3, normal: Vec3, source: &Polygon) -> f64 {
@@ -39,24 +34,16 @@ pub fn point_factors(bundles: &Bundles, point: Vec3, normal: Vec3) -> Vec<f64> {
     (0..bundles.n_bundles()).map(factor).collect()
 }
 
-/// Lambert's sum. Fronts run clockwise about the line of sight, hence the sign.
+/// Lambert's formula for corners in the scene's coordinates.
 fn lambert(corners: &[Vec3], point: Vec3, normal: Vec3) -> f64 {
-    let mut sum = 0.0;
-    for (k, from) in corners.iter().enumerate() {
-        let (from, to) = (*from - point, corners[(k + 1) % corners.len()] - point);
-        let across = to.cross(from);
-        let length = across.length();
-        // An edge seen end on subtends nothing.
-        if length > 0.0 {
-            sum += length.atan2(from.dot(to)) * normal.dot(across) / length;
-        }
-    }
-    (sum / TAU).max(0.0)
+    let seen: Vec<Vec3> = corners.iter().map(|corner| *corner - point).collect();
+    form_factor(&seen, normal).max(0.0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     /// The square [−1, 1]² at height z, facing down.
     fn lamp(z: f64) -> Polygon {

@@ -70,34 +70,47 @@ impl Rung {
 
 /// T of two patches with nothing between them and an estimate of its error, m² sr; `None` where they do not face each other.
 ///
-/// T = ∫∫ cosθ cosθ' / r² dA dA'. The estimate is reached relative to T, or the contour's own is returned.
-pub fn unoccluded(a: (&Polygon, &Nodes), b: (&Polygon, &Nodes), tolerance: f64) -> Option<(f64, f64)> {
+/// T = ∫∫ cosθ cosθ' / r² dA dA'. The tolerance is reached relative to T, or the contour's own estimate is returned.
+pub fn unoccluded(ladder: &Ladder, a: (&Polygon, &Nodes), b: (&Polygon, &Nodes), tolerance: f64) -> Option<(f64, f64)> {
     // Keep of each what is in front of the other.
-    let (of_a, of_b) = (in_front_of(a.0.vertices(), b.0), in_front_of(b.0.vertices(), a.0));
-    let whole = match (&of_a, &of_b) {
-        (Half::Behind, _) | (_, Half::Behind) => return None,
-        (Half::InFront, Half::InFront) => true,
-        _ => false,
-    };
-
-    // Climb the ladder where both are whole and apart: then the kernel is smooth.
-    let apart = a.1.centre.distance(b.1.centre) > 1.3 * (a.1.radius + b.1.radius);
-    if whole && apart {
-        let mut coarse = product_gauss(a, b, 0);
-        for rung in 1..LADDER.len() {
-            let fine = product_gauss(a, b, rung);
-            let change = (fine - coarse).abs();
-            if change <= tolerance * fine {
-                return Some((fine, change));
-            }
-            coarse = fine;
+    match (in_front_of(a.0.vertices(), b.0), in_front_of(b.0.vertices(), a.0)) {
+        (Half::Behind, _) | (_, Half::Behind) => None,
+        (Half::InFront, Half::InFront) => climb(a, b, tolerance).or_else(|| contour(a.0.vertices(), b.0.vertices())),
+        (of_a, of_b) => {
+            let part = |half: Half, polygon: &Polygon| match half {
+                Half::Part(part) => part,
+                _ => polygon.vertices().to_vec(),
+            };
+            let (of_a, of_b) = (part(of_a, a.0), part(of_b, b.0));
+            // Slivers too thin to be polygons are left to the contour.
+            let climbed = match (Polygon::new(of_a.clone()), Polygon::new(of_b.clone())) {
+                (Ok(p), Ok(q)) => climb((&p, &ladder.nodes(&p)), (&q, &ladder.nodes(&q)), tolerance),
+                _ => None,
+            };
+            climbed.or_else(|| contour(&of_a, &of_b))
         }
     }
-    let part = |half: Half, polygon: &Polygon| match half {
-        Half::Part(part) => part,
-        _ => polygon.vertices().to_vec(),
-    };
-    let (value, error) = contour::exchange(&part(of_a, a.0), &part(of_b, b.0));
+}
+
+/// Product Gauss for polygons that are apart, where the kernel is smooth; `None` where the ladder is too short.
+fn climb(a: (&Polygon, &Nodes), b: (&Polygon, &Nodes), tolerance: f64) -> Option<(f64, f64)> {
+    if a.1.centre.distance(b.1.centre) <= 1.3 * (a.1.radius + b.1.radius) {
+        return None;
+    }
+    let mut coarse = product_gauss(a, b, 0);
+    for rung in 1..LADDER.len() {
+        let fine = product_gauss(a, b, rung);
+        let change = (fine - coarse).abs();
+        if change <= tolerance * fine {
+            return Some((fine, change));
+        }
+        coarse = fine;
+    }
+    None
+}
+
+fn contour(a: &[Vec3], b: &[Vec3]) -> Option<(f64, f64)> {
+    let (value, error) = contour::exchange(a, b);
     (value > 0.0).then_some((value, error))
 }
 

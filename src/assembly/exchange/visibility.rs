@@ -1,5 +1,7 @@
 //! How much of the exchange of two patches gets through what stands between them.
 
+use super::Occlusion;
+use super::shadow;
 use crate::geometry::{Polygon, Shaft, Tracer, Vec3};
 use crate::sampling::{Kronecker, mix};
 
@@ -12,6 +14,8 @@ pub enum Visibility {
     None,
     /// Sampled by rays, with the variance of the share.
     Sampled { share: f64, variance: f64 },
+    /// Integrated: T that is taken away, and its error estimate, m² sr.
+    Integrated { blocked: f64, error: f64 },
 }
 
 /// A patch and the number of the facet it was cut from.
@@ -19,18 +23,27 @@ pub enum Visibility {
 pub struct End<'a> {
     pub polygon: &'a Polygon,
     pub facet: usize,
+    /// Its étendue, m² sr.
+    pub etendue: f64,
 }
 
-/// Classifies the pair, and where that does not settle it casts `n_rays` between points spread evenly over both.
+/// Classifies the pair, and where that does not settle it integrates what is blocked, or casts `n_rays` between points spread
+/// evenly over both.
 ///
 /// The share is Σ k V / Σ k, k the kernel cosθ cosθ'/r² of each ray and V whether it gets through. Its variance is that of the
 /// weighted mean with half a ray added to each outcome, so that no finite number of rays claims certainty.
-pub fn between(occluders: &Tracer, a: End, b: End, n_rays: usize, key: u64) -> Visibility {
+pub fn between(occluders: &Tracer, a: End, b: End, occlusion: Occlusion, n_rays: usize, key: u64) -> Visibility {
     let handles = match Shaft::between(occluders, (a.polygon, a.facet), (b.polygon, b.facet)) {
         Shaft::Clear => return Visibility::Full,
         Shaft::Blocked => return Visibility::None,
         Shaft::Undecided(handles) => handles,
     };
+    if let Occlusion::Exact { tolerance } = occlusion {
+        let shapes: Vec<&[Vec3]> = handles.iter().map(|handle| occluders.corners_of(*handle)).collect();
+        let tolerance = tolerance * a.etendue.min(b.etendue);
+        let (blocked, error) = shadow::blocked(a.polygon, b.polygon, &shapes, tolerance);
+        return Visibility::Integrated { blocked, error };
+    }
     let points = Kronecker::<4>::new(mix(&[key]));
     let (mut through, mut total, mut squares) = (0.0, 0.0, 0.0);
     for k in 0..n_rays {

@@ -15,6 +15,7 @@ mod points;
 mod polygons;
 mod reader;
 mod revolution;
+mod round;
 mod runner;
 mod value;
 

@@ -3,9 +3,9 @@
 //! Cases speak of radiosity B = π L, exitance E and irradiance H, one number a surface; the system of bundles.
 
 use super::error::CaseError;
-use crate::assembly::{Exchange, System, assemble};
+use crate::assembly::{Exchange, Occlusion, System, assemble, point_factors};
 use crate::basis::{Bundles, Resolution};
-use crate::geometry::Polygon;
+use crate::geometry::{Polygon, Vec3};
 use crate::linalg::{Block, LinearOperator};
 use crate::scattering::Lambert;
 use crate::scene::{Scene, SceneDescription, Surface};
@@ -16,6 +16,9 @@ use std::sync::Arc;
 /// No edge is longer: every polygon is one patch (a fan of triangles where it has five corners or more).
 pub const WHOLE: f64 = 1e300;
 
+/// Absolute error asked for of the form factors of partly visible pairs.
+const OCCLUDED: f64 = 1e-13;
+
 /// One surface of a case: one-sided, diffuse, grey.
 #[derive(Clone, Debug)]
 pub struct Body {
@@ -25,10 +28,18 @@ pub struct Body {
     pub exitance: f64,
 }
 
+/// A point of a surface where radiosity is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Probe {
+    pub surface: usize,
+    pub point: Vec3,
+    pub normal: Vec3,
+}
+
 /// A scene, cut and assembled.
 pub struct Model {
     scene: Scene,
-    pub bundles: Bundles,
+    bundles: Bundles,
     pub system: System,
     /// Surface of every bundle.
     surface_of: Vec<usize>,
@@ -51,8 +62,14 @@ pub enum Walls {
 
 /// Accuracy of every exchange a case asks for: what exact polygons can reach.
 fn settings(walls: Walls) -> Exchange {
-    // What escapes is not asked for: one ray a patch is the least there can be.
-    Exchange { tolerance: 1e-14, sink_rays: 1, repair: walls == Walls::Closed, ..Exchange::default() }
+    Exchange {
+        tolerance: 1e-14,
+        occlusion: Occlusion::Exact { tolerance: OCCLUDED },
+        // What escapes is not asked for: one ray a patch is the least there can be.
+        sink_rays: 1,
+        repair: walls == Walls::Closed,
+        ..Exchange::default()
+    }
 }
 
 impl Model {
@@ -161,6 +178,18 @@ impl Model {
     /// H of every surface, its area mean.
     pub fn irradiance(&self, radiance: &Block) -> Vec<f64> {
         self.means(self.system.irradiance(radiance).column(0))
+    }
+
+    /// B at points that face along these normals, from the solved field: E + albedo Σ F B (the Sloan iterate). Nothing may stand between.
+    pub fn gathered(&self, radiance: &Block, at: &[Probe]) -> Vec<f64> {
+        let value = |probe: &Probe| {
+            let factors = point_factors(&self.bundles, probe.point, probe.normal);
+            let incident: f64 = factors.iter().zip(radiance.column(0)).map(|(factor, l)| factor * PI * l).sum();
+            let surface = &self.scene.surfaces()[probe.surface];
+            let albedo = surface.front.lambertian().map_or(0.0, |albedos| albedos[0]);
+            PI * surface.emission[0] + albedo * incident
+        };
+        at.iter().map(value).collect()
     }
 
     /// K x, for vectors of radiance.

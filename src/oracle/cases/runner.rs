@@ -3,7 +3,7 @@
 use super::answer::{Answers, Outcome, Verdict, judge};
 use super::error::CaseError;
 use super::reader::Case;
-use super::{closed, enclosure, points, polygons};
+use super::{closed, enclosure, points, polygons, round};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
@@ -67,6 +67,18 @@ fn answers(case: &Case) -> Result<Answers, CaseError> {
         "element_sphere" => points::to_sphere(case),
         "enclosure_polygons" => enclosure::answers(case),
         "any_closed_scene" => closed::uniform(case),
+        "coaxial_disks" if !geometry.has("rho") => round::coaxial_disks(case),
+        "coaxial_annuli" => round::coaxial_annuli(case),
+        "coaxial_disks_blocked" => round::coaxial_disks_blocked(case),
+        "sphere_disk" => round::sphere_disk(case),
+        "sphere_rectangle" => round::sphere_rectangle(case),
+        "concentric_spheres" if !geometry.has("rho") && !geometry.has("E_outer") => round::concentric_spheres(case),
+        "hemisphere_with_base" => round::hemisphere(case),
+        "sphere_zones" => round::sphere_zones(case),
+        "sphere_zones_blocked" => round::sphere_zones_blocked(case),
+        "cone_interior" => round::cone(case),
+        "cylinder_interior" => round::cylinder(case),
+        "cylinder_rings" => round::cylinder_rings(case),
         _ => Err(CaseError::Needs("a kind of geometry that is not known here")),
     }
 }

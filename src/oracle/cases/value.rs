@@ -1,18 +1,21 @@
 //! What a case states and what is computed for it: a number, words, or lists of them, nested as deep as the case likes.
 
 use serde::{Serialize, Serializer};
+use std::collections::BTreeMap;
 
 /// A value of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     Number(f64),
     List(Vec<Value>),
+    /// Values by name.
+    Fields(BTreeMap<String, Value>),
     /// Words: not compared with anything.
     Text(String),
 }
 
 impl Value {
-    /// Reads a JSON value. Strings that are finite decimals are numbers. `None` for what no case holds: null, booleans, objects.
+    /// Reads a JSON value. Strings that are finite decimals are numbers. `None` for what no case holds: null and booleans.
     pub(super) fn from_json(json: &serde_json::Value) -> Option<Self> {
         match json {
             serde_json::Value::Number(number) => number.as_f64().map(Self::Number),
@@ -21,7 +24,11 @@ impl Value {
                 _ => Self::Text(text.clone()),
             }),
             serde_json::Value::Array(items) => items.iter().map(Self::from_json).collect::<Option<_>>().map(Self::List),
-            _ => None,
+            serde_json::Value::Object(fields) => {
+                let field = |(name, json): (&String, _)| Some((name.clone(), Self::from_json(json)?));
+                fields.iter().map(field).collect::<Option<_>>().map(Self::Fields)
+            }
+            serde_json::Value::Null | serde_json::Value::Bool(_) => None,
         }
     }
 
@@ -63,15 +70,6 @@ impl Value {
             _ => None,
         }
     }
-
-    /// Applies a function to every number.
-    pub(super) fn map(&self, f: &impl Fn(f64) -> f64) -> Self {
-        match self {
-            Self::Number(number) => Self::Number(f(*number)),
-            Self::List(items) => Self::List(items.iter().map(|item| item.map(f)).collect()),
-            Self::Text(text) => Self::Text(text.clone()),
-        }
-    }
 }
 
 impl Serialize for Value {
@@ -79,6 +77,7 @@ impl Serialize for Value {
         match self {
             Self::Number(number) => serializer.serialize_f64(*number),
             Self::List(items) => items.serialize(serializer),
+            Self::Fields(fields) => fields.serialize(serializer),
             Self::Text(text) => serializer.serialize_str(text),
         }
     }

@@ -107,7 +107,7 @@ pub fn estimators(outcome: &StudyOutcome, on_page: &FigureOnPage) -> String {
         "Étendue-weighted root mean square difference from the discrete solution (markers), and what the standard errors predict (lines).",
     );
     let caption = format!(
-        "z-scores over all bundles and bands at the largest sample count; p is the probability of one this large, corrected for their number \
+        "z-scores at the largest sample count, of bundles pooled with their neighbours until each comparison rests on 400 expected scores; p is the probability of one this large, corrected for their number \
          (Šidák), and below {} the verdict is disagreement.",
         significant(SIGNIFICANCE, 1)
     );

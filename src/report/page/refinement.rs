@@ -41,7 +41,7 @@ pub fn refinement(outcome: &StudyOutcome, on_page: &FigureOnPage) -> String {
     let shown = figure(
         on_page,
         "Difference of the surface means from the path tracer against patch size, both logarithmic, with the fitted order",
-        "Étendue-weighted root mean square difference of the surface means from the path tracer's, relative; whiskers and the shaded floor are \
+        "Area-weighted root mean square difference of the surfaces' mean reflected radiance from the path tracer's, relative; whiskers and the shaded floor are \
          the path tracer's own noise.",
     );
     let means = if study.surfaces.is_empty() {
