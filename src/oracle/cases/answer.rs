@@ -26,6 +26,13 @@ pub struct Answers {
     pub values: BTreeMap<String, (Value, f64)>,
 }
 
+/// A law measured: the worst defect found, and the largest that passes. Both relative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Identity {
+    pub defect: f64,
+    pub allowed: f64,
+}
+
 /// How a case ended.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
@@ -68,6 +75,39 @@ impl Answers {
     }
 }
 
+impl Outcome {
+    /// An outcome without numbers.
+    pub(super) fn blank(case: &Case, verdict: Verdict, seconds: f64) -> Self {
+        Self {
+            id: case.id.clone(),
+            group: case.group.clone(),
+            family: case.family.clone(),
+            verdict,
+            computed: BTreeMap::new(),
+            reference: case.values.clone(),
+            error: None,
+            allowed: None,
+            estimate: None,
+            worst: None,
+            seconds,
+        }
+    }
+}
+
+/// Holds the defect of a law against what is allowed; it stands for the case's 'tolerance', which is in words.
+pub fn judge_identity(case: &Case, identity: Identity, seconds: f64) -> Outcome {
+    let Identity { defect, allowed } = identity;
+    let verdict = if defect <= allowed { Verdict::Pass } else { Verdict::Fail(None) };
+    let name = "tolerance".to_string();
+    Outcome {
+        computed: BTreeMap::from([(name.clone(), Value::Number(defect))]),
+        error: Some(defect),
+        allowed: Some(allowed),
+        worst: Some(name),
+        ..Outcome::blank(case, verdict, seconds)
+    }
+}
+
 /// Half a unit of the given significant digit of a number.
 fn half_unit(value: f64, digits: u32) -> f64 {
     if value == 0.0 {
@@ -80,19 +120,8 @@ fn half_unit(value: f64, digits: u32) -> f64 {
 ///
 /// A reference that is zero has no significant digits: it is held to those of the largest number of its value, or of 1.
 pub fn judge(case: &Case, answers: Answers, seconds: f64) -> Outcome {
-    let mut outcome = Outcome {
-        id: case.id.clone(),
-        group: case.group.clone(),
-        family: case.family.clone(),
-        verdict: Verdict::Pass,
-        computed: answers.values.iter().map(|(name, (value, _))| (name.clone(), value.clone())).collect(),
-        reference: case.values.clone(),
-        error: None,
-        allowed: None,
-        estimate: None,
-        worst: None,
-        seconds,
-    };
+    let mut outcome = Outcome::blank(case, Verdict::Pass, seconds);
+    outcome.computed = answers.values.iter().map(|(name, (value, _))| (name.clone(), value.clone())).collect();
     let digits = case.digits_certain.clamp(1, MOST_DIGITS);
     let mut worst_ratio = -1.0;
     for (name, reference) in &case.values {

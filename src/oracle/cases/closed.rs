@@ -11,10 +11,10 @@ use super::value::Value;
 const CELLS: usize = 3;
 
 /// Albedos of the isothermal enclosure, a face each: "arbitrary in [0, 1)".
-const ALBEDOS: [f64; 6] = [0.0, 0.9, 0.5, 0.25, 0.75, 0.99];
+pub const ALBEDOS: [f64; 6] = [0.0, 0.9, 0.5, 0.25, 0.75, 0.99];
 
 /// A box of three different sides, its faces cut into cells, albedo and exitance by face.
-fn closed_box(albedo: [f64; 6], exitance: [f64; 6]) -> Result<Model, CaseError> {
+pub fn closed_box(albedo: [f64; 6], exitance: [f64; 6]) -> Result<Model, CaseError> {
     let span = |k: usize| [k as f64 / CELLS as f64, (k + 1) as f64 / CELLS as f64];
     let mut bodies = Vec::new();
     for (f, face) in cube::faces(1.0).iter().enumerate() {

@@ -6,9 +6,11 @@
 
 mod answer;
 mod closed;
+mod continuous;
 mod cube;
 mod enclosure;
 mod error;
+mod identities;
 mod limit;
 mod model;
 mod points;

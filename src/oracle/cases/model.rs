@@ -199,6 +199,28 @@ impl Model {
         y
     }
 
+    /// The largest eigenvalue of K by power iteration: K ≥ 0 has one that nothing exceeds. Right to rounding where the others are far
+    /// smaller.
+    pub fn spectral_radius(&self) -> f64 {
+        let n = self.system.n_bundles();
+        let mut x = Block::from_fn(n, 1, |_, _| 1.0);
+        let mut radius = 0.0;
+        for _ in 0..200 {
+            let y = self.bounce(&x);
+            let size = y.max_abs();
+            if size == 0.0 {
+                return 0.0;
+            }
+            let settled = (size - radius).abs() <= 1e-15 * size;
+            radius = size;
+            x = Block::from_fn(n, 1, |i, _| y.get(i, 0) / size);
+            if settled {
+                break;
+            }
+        }
+        radius
+    }
+
     /// E + K E + … + Kᵏ E as radiosity of every surface, for k = 0 … `last`.
     pub fn neumann_sums(&self, last: usize) -> Vec<Vec<f64>> {
         let mut term = self.system.emission().clone();

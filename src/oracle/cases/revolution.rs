@@ -113,11 +113,6 @@ pub fn arc(radius: f64, [from, to]: [f64; 2], n_pieces: usize) -> Vec<[f64; 2]> 
     (0..=n_pieces).map(at).collect()
 }
 
-/// Rings for a stretch of a profile such that they are about as long as n sectors of this radius are wide.
-pub fn rings(length: f64, radius: f64, n: usize) -> usize {
-    ((length * n as f64 / (TAU * radius)).round() as usize).max(1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

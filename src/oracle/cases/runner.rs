@@ -1,39 +1,26 @@
 //! From a case to its outcome.
 
-use super::answer::{Answers, Outcome, Verdict, judge};
+use super::answer::{Answers, Outcome, Verdict, judge, judge_identity};
 use super::error::CaseError;
 use super::reader::Case;
-use super::{closed, enclosure, points, polygons, round};
-use std::collections::BTreeMap;
+use super::{closed, continuous, enclosure, identities, points, polygons, round};
 use std::time::Instant;
 
 /// Answers one case from its geometry and judges the answer.
 pub fn run(case: &Case) -> Outcome {
     let start = Instant::now();
-    let result = answers(case);
-    let seconds = start.elapsed().as_secs_f64();
-    match result {
-        Ok(answers) => judge(case, answers, seconds),
-        Err(error) => {
-            let verdict = match error {
-                CaseError::Needs(what) => Verdict::Skipped(what.to_string()),
-                other => Verdict::Fail(Some(other.to_string())),
-            };
-            Outcome {
-                id: case.id.clone(),
-                group: case.group.clone(),
-                family: case.family.clone(),
-                verdict,
-                computed: BTreeMap::new(),
-                reference: case.values.clone(),
-                error: None,
-                allowed: None,
-                estimate: None,
-                worst: None,
-                seconds,
-            }
-        }
-    }
+    let seconds = || start.elapsed().as_secs_f64();
+    let outcome = match case.geometry.kind.as_str() {
+        "any_scene" => identities::check(case).map(|identity| judge_identity(case, identity, seconds())),
+        _ => answers(case).map(|answers| judge(case, answers, seconds())),
+    };
+    outcome.unwrap_or_else(|error| {
+        let verdict = match error {
+            CaseError::Needs(what) => Verdict::Skipped(what.to_string()),
+            other => Verdict::Fail(Some(other.to_string())),
+        };
+        Outcome::blank(case, verdict, seconds())
+    })
 }
 
 /// What a case needs that is not here yet.
@@ -79,6 +66,13 @@ fn answers(case: &Case) -> Result<Answers, CaseError> {
         "cone_interior" => round::cone(case),
         "cylinder_interior" => round::cylinder(case),
         "cylinder_rings" => round::cylinder_rings(case),
+        "polygon_pair" => continuous::facing_squares(case),
+        "coaxial_disks" => continuous::facing_disks(case),
+        "tube_open_ends" => continuous::tube(case),
+        "cylindrical_cavity" => continuous::cylindrical_cavity(case),
+        "spherical_cavity" => continuous::spherical_cavity(case),
+        "sphere_patches" => continuous::sphere_patches(case),
+        "cube" => continuous::cube_means(case),
         _ => Err(CaseError::Needs("a kind of geometry that is not known here")),
     }
 }
