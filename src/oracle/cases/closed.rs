@@ -3,7 +3,7 @@
 use super::answer::{Answers, Demand};
 use super::cube;
 use super::error::CaseError;
-use super::model::{Body, Model, WHOLE, Walls};
+use super::model::{Body, EXACT, Model, Walls};
 use super::reader::Case;
 use super::value::Value;
 
@@ -22,7 +22,7 @@ pub fn closed_box(albedo: [f64; 6], exitance: [f64; 6]) -> Result<Model, CaseErr
             (0..CELLS * CELLS).map(|k| face.cell(span(k / CELLS), span(k % CELLS))).collect::<Result<_, _>>()?;
         bodies.push(Body { polygons: cells, albedo: albedo[f], exitance: exitance[f] });
     }
-    Model::new(bodies, WHOLE, Walls::Closed)
+    Model::new(bodies, Walls::Closed, EXACT)
 }
 
 /// The value furthest from the mean of all: where one number stands for a whole field, the worst of the field is told.

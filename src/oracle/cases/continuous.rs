@@ -4,7 +4,7 @@ use super::answer::{Answers, Demand};
 use super::cube;
 use super::error::CaseError;
 use super::limit::{Limit, refine};
-use super::model::{Body, Model, Probe, WHOLE, Walls};
+use super::model::{Body, EXACT, Model, Probe, Walls};
 use super::reader::Case;
 use super::revolution::{Facing, arc, line, revolve, sectors};
 use super::round::lengths;
@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 const CELLS: [usize; 6] = [2, 4, 6, 8, 12, 16];
 
 /// Sectors of round shapes whose rings grow with them.
-const SECTORS: [usize; 5] = [8, 12, 16, 24, 32];
+const SECTORS: [usize; 5] = [8, 12, 16, 20, 24];
 
 /// Adds each limit under its name.
 fn named(names: &[&str], limits: &[Limit]) -> Answers {
@@ -65,14 +65,14 @@ pub fn facing_squares(case: &Case) -> Result<Answers, CaseError> {
             let (albedo, exitance) = surfaces[k];
             Ok::<_, CaseError>(Body { polygons: cells(polygons[k].vertices(), n)?, albedo, exitance })
         };
-        Model::new(vec![body(0)?, body(1)?], WHOLE, Walls::Open)
+        Model::new(vec![body(0)?, body(1)?], Walls::Open, EXACT)
     };
     let limits = refine(&CELLS, 2.0, |n| {
         let model = model(n)?;
         let radiance = model.radiance()?;
         let mut values = model.gathered(&radiance, &probes);
         values.extend(model.radiosity(&radiance));
-        Ok((values, model.form_factor_error()))
+        Ok((values, model.noise()))
     })?;
     let names = ["corner", "edge_mid", "centre", "quarter"];
     let mut answers = Answers::new(Demand::Estimate);
@@ -109,11 +109,11 @@ pub fn facing_disks(case: &Case) -> Result<Answers, CaseError> {
             Ok::<_, CaseError>(Body { polygons, albedo: surfaces[k].0, exitance: surfaces[k].1 })
         };
         let bodies = vec![disk(0, r1, 0.0, Facing::Left)?, disk(1, r2, h, Facing::Right)?];
-        let model = Model::new(bodies, WHOLE, Walls::Open)?;
+        let model = Model::new(bodies, Walls::Open, EXACT)?;
         let radiance = model.radiance()?;
         let mut values = model.gathered(&radiance, &probes);
         values.extend(model.radiosity(&radiance));
-        Ok((values, model.form_factor_error()))
+        Ok((values, model.noise()))
     })?;
     let names = ["B1_r=0", "B1_r=R1/2", "B1_r=R1", "B2_r=0", "B2_r=R2/2", "B2_r=R2", "B1_mean", "B2_mean"];
     Ok(named(&names, &limits))
@@ -133,7 +133,7 @@ pub fn tube(case: &Case) -> Result<Answers, CaseError> {
         let foot = radius * cosine * Vec3::new(cosine, sine, 0.0);
         let probe =
             |share: f64| Probe { surface: 0, point: foot + share * length * Vec3::Z, normal: -foot.normalize() };
-        let model = Model::new(vec![Body { polygons: wall, albedo, exitance }], WHOLE, Walls::Open)?;
+        let model = Model::new(vec![Body { polygons: wall, albedo, exitance }], Walls::Open, EXACT)?;
         let radiance = model.radiance()?;
         let mut values = model.gathered(&radiance, &[0.0, 0.1, 0.25, 0.5].map(probe));
         let (mean, incident) = (model.radiosity(&radiance)[0], model.irradiance(&radiance)[0]);
@@ -141,7 +141,7 @@ pub fn tube(case: &Case) -> Result<Answers, CaseError> {
         let area = model.areas()[0];
         let opening = 0.25 * n as f64 * radius * radius * (2.0 * PI / n as f64).sin() * 2.0;
         values.extend([mean, (mean - incident) * area, (mean - incident) * area / (2.0 * opening)]);
-        Ok((values.into_iter().map(|value| value * emissivity / exitance).collect(), model.form_factor_error()))
+        Ok((values.into_iter().map(|value| value * emissivity / exitance).collect(), model.noise()))
     })?;
     let names = [
         "B_x/L=0",
@@ -169,12 +169,12 @@ pub fn spherical_cavity(case: &Case) -> Result<Answers, CaseError> {
     let limits = refine(&SECTORS, 2.0, |n| {
         let wall = revolve(&arc(radius, [opening, PI], n / 2), &sectors(n), Facing::Right)?;
         let body = Body { polygons: wall, albedo: 1.0 - emissivity, exitance: emissivity };
-        let model = Model::new(vec![body], WHOLE, Walls::Open)?;
+        let model = Model::new(vec![body], Walls::Open, EXACT)?;
         let radiance = model.radiance()?;
         let (mean, incident, area) = (model.radiosity(&radiance)[0], model.irradiance(&radiance)[0], model.areas()[0]);
         let lost = (mean - incident) * area;
         let sphere = 4.0 * PI * radius * radius;
-        Ok((vec![mean, area / sphere, lost / (radius * radius)], model.form_factor_error()))
+        Ok((vec![mean, area / sphere, lost / (radius * radius)], model.noise()))
     })?;
     // The apparent emissivity of the opening is the radiosity of the wall behind it.
     Ok(named(&["eps_apparent", "wall_fraction", "flux_through_aperture_over_Eb_R2"], &limits))
@@ -203,7 +203,7 @@ pub fn sphere_patches(case: &Case) -> Result<Answers, CaseError> {
             Ok::<_, CaseError>(Body { polygons, albedo: *albedo, exitance: *exitance })
         };
         let bodies = bands.iter().map(body).collect::<Result<_, _>>()?;
-        let model = Model::new(bodies, WHOLE, Walls::Closed)?;
+        let model = Model::new(bodies, Walls::Closed, EXACT)?;
         let radiance = model.radiance()?;
         let areas = model.areas();
         let whole: f64 = areas.iter().sum();
@@ -218,7 +218,7 @@ pub fn sphere_patches(case: &Case) -> Result<Answers, CaseError> {
         values.push(model.spectral_radius());
         values.push(values[0] / values[1]);
         values.extend(model.radiosity(&radiance));
-        Ok((values, model.form_factor_error()))
+        Ok((values, model.noise()))
     })?;
     let mut answers = named(&["H", "H_direct"], &limits);
     let list = |limits: &[Limit]| {
@@ -254,14 +254,14 @@ pub fn cylindrical_cavity(case: &Case) -> Result<Answers, CaseError> {
         let base = revolve(&crowd(line([0.0, 0.0], [radius, 0.0], n / 4)), &azimuths, Facing::Left)?;
         let wall = revolve(&crowd(line([radius, 0.0], [radius, length], n_rings)), &azimuths, Facing::Left)?;
         let body = |polygons| Body { polygons, albedo, exitance };
-        let model = Model::new(vec![body(base), body(wall)], WHOLE, Walls::Open)?;
+        let model = Model::new(vec![body(base), body(wall)], Walls::Open, EXACT)?;
         let radiance = model.radiance()?;
         let centre = Probe { surface: 0, point: Vec3::ZERO, normal: Vec3::Z };
         let mut values = model.gathered(&radiance, &[centre]);
         let (means, incident) = (model.radiosity(&radiance), model.irradiance(&radiance));
         let lost: f64 = (0..2).map(|k| (means[k] - incident[k]) * model.areas()[k]).sum();
         values.extend([lost / model.areas()[0], means[1], means[0]]);
-        Ok((values.into_iter().map(|value| value * emissivity / exitance).collect(), model.form_factor_error()))
+        Ok((values.into_iter().map(|value| value * emissivity / exitance).collect(), model.noise()))
     })?;
     Ok(named(&["B_base_centre", "effective_emissivity_aperture", "B_wall_mean", "B_base_mean"], &limits))
 }
@@ -281,10 +281,10 @@ pub fn cube_means(case: &Case) -> Result<Answers, CaseError> {
             let polygons = (0..n * n).map(|k| face.cell(span(k / n), span(k % n))).collect::<Result<_, _>>()?;
             bodies.push(Body { polygons, albedo, exitance: if f == 0 { 1.0 } else { 0.0 } });
         }
-        let model = Model::new(bodies, WHOLE, Walls::Closed)?;
-        Ok::<_, CaseError>((model.radiosity(&model.radiance()?)[..3].to_vec(), model.form_factor_error()))
+        let model = Model::new(bodies, Walls::Closed, EXACT)?;
+        Ok::<_, CaseError>((model.radiosity(&model.radiance()?)[..3].to_vec(), model.noise()))
     };
-    let limits = refine(&[4, 6, 8, 10, 12], 2.0, |n| means(n, 2.5))?;
+    let limits = refine(&[4, 6, 8, 10], 2.0, |n| means(n, 2.5))?;
     let mut answers = named(&["mean_B_floor", "mean_B_ceiling", "mean_B_side"], &limits);
     let table = "P0_uniform_n_x_n_means_floor_ceiling_side";
     if let Some(rows) = case.values.get(table).and_then(Value::items) {
@@ -293,7 +293,7 @@ pub fn cube_means(case: &Case) -> Result<Answers, CaseError> {
             .iter()
             .filter_map(|row| row.items()?.first()?.number())
             .map(|n| n as usize)
-            .filter(|n| *n <= 16)
+            .filter(|n| *n <= 8)
             .collect();
         let rows = counts.into_iter().map(|n| Ok(std::iter::once(n as f64).chain(means(n, 1.0)?.0).collect()));
         answers.add(table, Value::rows(rows.collect::<Result<Vec<_>, CaseError>>()?), 1e-10);

@@ -2,7 +2,7 @@
 
 use super::answer::{Answers, Demand};
 use super::error::CaseError;
-use super::model::{Body, Model, WHOLE, Walls};
+use super::model::{Body, Model, Walls};
 use super::reader::{Case, Geometry};
 use super::value::Value;
 use crate::linalg::{Block, Dense, LinearOperator, LuFactor, symmetric_eigenvalues};
@@ -14,7 +14,7 @@ pub fn answers(case: &Case) -> Result<Answers, CaseError> {
     let geometry = &case.geometry;
     let bodies = bodies(geometry)?;
     let (albedo, exitance): (Vec<f64>, Vec<f64>) = bodies.iter().map(|body| (body.albedo, body.exitance)).unzip();
-    let model = Model::new(bodies, WHOLE, Walls::Closed)?;
+    let model = Model::new(bodies, Walls::Closed, occluded(case))?;
     let factors = model.form_factors();
     let error = model.form_factor_error();
     let mut answers = Answers::new(Demand::Digits);
@@ -38,6 +38,11 @@ pub fn answers(case: &Case) -> Result<Answers, CaseError> {
     // Whatever else was read off the geometry, a case gets the values it has names for.
     answers.values.retain(|name, _| case.values.contains_key(name));
     Ok(answers)
+}
+
+/// Absolute error asked for of partly visible pairs: two digits beyond those of the case, for what solving does to them.
+fn occluded(case: &Case) -> f64 {
+    0.1f64.powi(case.digits_certain.clamp(1, 11) as i32 + 2)
 }
 
 fn bodies(geometry: &Geometry) -> Result<Vec<Body>, CaseError> {

@@ -9,8 +9,12 @@ pub struct Limit {
     pub error: f64,
 }
 
-/// The estimate is the last change of the extrapolation, which measures the error before it: twice that leaves room.
-const SAFETY: f64 = 2.0;
+/// The estimate is the last change of the extrapolation, which measures the error before it; ten times that leaves room for sequences
+/// that are not quite even.
+const SAFETY: f64 = 10.0;
+
+/// One order more improves an extrapolation by no more than this: a change that is smaller still is luck.
+const SUDDEN: f64 = 0.1;
 
 /// Extrapolates values at these steps to step 0 by the polynomial in step^power through all of them (Richardson; Neville's scheme).
 ///
@@ -24,17 +28,19 @@ pub fn extrapolate(steps: &[f64], values: &[f64], power: f64, value_error: f64) 
     }
     let mut column = values.to_vec();
     let mut noise = vec![value_error; n];
-    let mut before = f64::NAN;
+    let mut best = vec![column[n - 1]];
     for k in 1..n {
-        before = column[n - k];
         for i in 0..n - k {
             let share = x[i + k] / (x[i] - x[i + k]);
             column[i] = column[i + 1] + share * (column[i + 1] - column[i]);
             noise[i] = (1.0 + share.abs()) * noise[i + 1] + share.abs() * noise[i];
         }
+        best.push(column[n - 1 - k]);
     }
-    // The extrapolation without the coarsest value, against the one with it.
-    Limit { value: column[0], error: SAFETY * (column[0] - before).abs() + noise[0] }
+    // The best of every order, against the one before it: the last change, or a share of the one before where that fell suddenly.
+    let change = |k: usize| (best[k] - best[k - 1]).abs();
+    let last = change(n - 1).max(if n > 2 { SUDDEN * change(n - 2) } else { 0.0 });
+    Limit { value: column[0], error: SAFETY * last + noise[0] }
 }
 
 /// Computes lists of values at finer and finer resolutions, and extrapolates each of them: `compute(n)` at every n of `levels`, the step

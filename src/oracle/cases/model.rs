@@ -14,10 +14,10 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// No edge is longer: every polygon is one patch (a fan of triangles where it has five corners or more).
-pub const WHOLE: f64 = 1e300;
+const WHOLE: f64 = 1e300;
 
-/// Absolute error asked for of the form factors of partly visible pairs.
-const OCCLUDED: f64 = 1e-13;
+/// Absolute error asked for of the form factors of partly visible pairs, where polygons are the geometry itself.
+pub const EXACT: f64 = 1e-13;
 
 /// One surface of a case: one-sided, diffuse, grey.
 #[derive(Clone, Debug)]
@@ -61,10 +61,10 @@ pub enum Walls {
 }
 
 /// Accuracy of every exchange a case asks for: what exact polygons can reach.
-fn settings(walls: Walls) -> Exchange {
+fn settings(walls: Walls, occluded: f64) -> Exchange {
     Exchange {
         tolerance: 1e-14,
-        occlusion: Occlusion::Exact { tolerance: OCCLUDED },
+        occlusion: Occlusion::Exact { tolerance: occluded },
         // What escapes is not asked for: one ray a patch is the least there can be.
         sink_rays: 1,
         repair: walls == Walls::Closed,
@@ -73,11 +73,11 @@ fn settings(walls: Walls) -> Exchange {
 }
 
 impl Model {
-    /// Builds the scene, cuts it and assembles it. A scene must emit: where no body does, the first one emits 1.
+    /// Builds the scene, cuts it and assembles it, form factors of partly visible pairs to the absolute error `occluded`. A scene must emit: where no body does, the first one emits 1.
     ///
     /// # Errors
     /// What scenes, bases and assembly refuse.
-    pub fn new(mut bodies: Vec<Body>, patch_size: f64, walls: Walls) -> Result<Self, CaseError> {
+    pub fn new(mut bodies: Vec<Body>, walls: Walls, occluded: f64) -> Result<Self, CaseError> {
         if bodies.iter().all(|body| body.exitance == 0.0)
             && let Some(first) = bodies.first_mut()
         {
@@ -98,8 +98,8 @@ impl Model {
             camera: None,
         };
         let scene = Scene::new(description)?;
-        let bundles = Bundles::new(&scene, Resolution { patch_size, n_directions: 1 })?;
-        let system = assemble(&scene, &bundles, settings(walls))?;
+        let bundles = Bundles::new(&scene, Resolution { patch_size: WHOLE, n_directions: 1 })?;
+        let system = assemble(&scene, &bundles, settings(walls, occluded))?;
         let surface = |bundle| {
             let patch = bundles.patch(bundles.element_of(bundle).0);
             patch.map_or(0, |patch| scene.facets()[patch.facet].surface)
@@ -145,6 +145,13 @@ impl Model {
         let quadrature = if report.quadrature_error.is_finite() { report.quadrature_error } else { 0.0 };
         let n = (self.system.n_bundles() as f64).sqrt();
         quadrature.max(f64::EPSILON) + 3.0 * n * report.visibility_error
+    }
+
+    /// Relative error of values that are extrapolated: what was estimated for partly visible pairs. Quadrature of the others is left
+    /// out, its noise shows in the extrapolation itself.
+    pub fn noise(&self) -> f64 {
+        let n = (self.system.n_bundles() as f64).sqrt();
+        64.0 * f64::EPSILON + 3.0 * n * self.system.report().visibility_error
     }
 
     /// True where something stands between some pair of patches.

@@ -3,7 +3,7 @@
 use super::answer::{Answers, Demand};
 use super::error::CaseError;
 use super::limit::{extrapolate, refine};
-use super::model::{Body, Model, WHOLE, Walls};
+use super::model::{Body, EXACT, Model, Walls};
 use super::reader::{Case, Geometry};
 use super::revolution::{disk, sectors};
 use super::value::Value;
@@ -23,7 +23,7 @@ pub fn pair(case: &Case) -> Result<Answers, CaseError> {
     if geometry.has("occluding_disk") {
         return pair_past_a_disk(&geometry.part("occluding_disk")?, &one, &two);
     }
-    let model = Model::new(bodies(&one, &two, &occluders), WHOLE, Walls::Open)?;
+    let model = Model::new(bodies(&one, &two, &occluders), Walls::Open, EXACT)?;
     let factors = model.form_factors();
     let error = model.form_factor_error();
     let demand = Demand::Digits;
@@ -33,7 +33,7 @@ pub fn pair(case: &Case) -> Result<Answers, CaseError> {
     answers.number("area_1", model.areas()[0], 0.0);
     answers.number("area_2", model.areas()[1], 0.0);
     if !occluders.is_empty() {
-        let open = Model::new(bodies(&one, &two, &[]), WHOLE, Walls::Open)?;
+        let open = Model::new(bodies(&one, &two, &[]), Walls::Open, EXACT)?;
         let factor = open.form_factors()[0][1];
         answers.number("F_12_unoccluded", factor, open.form_factor_error() * factor);
     }
@@ -57,11 +57,11 @@ fn pair_past_a_disk(fields: &Geometry, one: &Polygon, two: &Polygon) -> Result<A
     }
     let limits = refine(&[16, 24, 32, 48, 64], 2.0, |n| {
         let blocker = disk(&Frame::about(normal), centre, radius, &sectors(n))?;
-        let model = Model::new(bodies(one, two, &blocker), WHOLE, Walls::Open)?;
+        let model = Model::new(bodies(one, two, &blocker), Walls::Open, 1e-9)?;
         let factors = model.form_factors();
-        Ok((vec![factors[0][1], factors[0][2]], model.form_factor_error()))
+        Ok((vec![factors[0][1], factors[0][2]], model.noise()))
     })?;
-    let open = Model::new(bodies(one, two, &[]), WHOLE, Walls::Open)?;
+    let open = Model::new(bodies(one, two, &[]), Walls::Open, EXACT)?;
     let factor = open.form_factors()[0][1];
     let mut answers = Answers::new(Demand::Estimate);
     answers.number("F_12", limits[0].value, limits[0].error);
@@ -76,7 +76,7 @@ fn factor(one: Vec<Vec3>, two: Vec<Vec3>) -> Result<(f64, f64), CaseError> {
         Polygon::new(corners).map_err(|source| CaseError::Polygon { what: what.to_string(), source })
     };
     let bodies = bodies(&polygon(one, "first rectangle")?, &polygon(two, "second rectangle")?, &[]);
-    let model = Model::new(bodies, WHOLE, Walls::Open)?;
+    let model = Model::new(bodies, Walls::Open, EXACT)?;
     Ok((model.form_factors()[0][1], model.form_factor_error()))
 }
 
@@ -164,7 +164,7 @@ pub fn cube_grid(case: &Case) -> Result<Answers, CaseError> {
             }
         }
     }
-    let model = Model::new(bodies, WHOLE, Walls::Closed)?;
+    let model = Model::new(bodies, Walls::Closed, EXACT)?;
     let radiosity = model.radiosity(&model.radiance()?);
     let mut answers = Answers::new(Demand::Digits);
     let rows = index.iter().zip(&radiosity).map(|([f, i, j], b)| vec![*f as f64, *i as f64, *j as f64, *b]);

@@ -4,7 +4,7 @@
 use super::answer::{Answers, Demand};
 use super::error::CaseError;
 use super::limit::refine;
-use super::model::{Body, Model, WHOLE, Walls};
+use super::model::{Body, Model, Walls};
 use super::reader::{Case, Geometry};
 use super::revolution::{Facing, arc, disk, revolve, sectors};
 use crate::geometry::{Frame, Polygon, Vec3};
@@ -16,8 +16,14 @@ const FLAT: [usize; 6] = [12, 16, 24, 32, 48, 64];
 /// Sectors where shapes are cut into rings, too.
 const RINGED: [usize; 5] = [8, 12, 16, 24, 32];
 
+/// Sectors of a ball seen from outside: planes of its facets cut what it sees.
+const BALL: [usize; 5] = [16, 24, 32, 48, 64];
+
 /// Sectors where a pair takes adaptive quadrature around its occluders.
 const BLOCKED: [usize; 4] = [8, 12, 16, 24];
+
+/// Absolute error asked for of form factors past something round.
+const ROUND: f64 = 1e-8;
 
 /// What a case asks for: its name, and the surfaces from and to which the form factor is.
 type Wanted = [(&'static str, usize, usize)];
@@ -30,9 +36,9 @@ fn factors(
 ) -> Result<Answers, CaseError> {
     let limits = refine(levels, 2.0, |n| {
         let bodies = build(n)?.into_iter().map(Body::black).collect();
-        let model = Model::new(bodies, WHOLE, Walls::Open)?;
+        let model = Model::new(bodies, Walls::Open, ROUND)?;
         let factors = model.form_factors();
-        Ok((wanted.iter().map(|(_, from, to)| factors[*from][*to]).collect(), model.form_factor_error()))
+        Ok((wanted.iter().map(|(_, from, to)| factors[*from][*to]).collect(), model.noise()))
     })?;
     let mut answers = Answers::new(Demand::Estimate);
     for ((name, ..), limit) in wanted.iter().zip(limits) {
@@ -107,7 +113,7 @@ pub fn coaxial_disks_blocked(case: &Case) -> Result<Answers, CaseError> {
 /// `sphere_disk`: a sphere over the middle of a disk.
 pub fn sphere_disk(case: &Case) -> Result<Answers, CaseError> {
     let [radius, disk_radius, h] = lengths(&case.geometry, ["sphere_radius", "disk_radius", "h_center_to_disk"])?;
-    factors(&RINGED, &[("F_sphere_disk", 0, 1), ("F_disk_sphere", 1, 0)], |n| {
+    factors(&BALL, &[("F_sphere_disk", 0, 1), ("F_disk_sphere", 1, 0)], |n| {
         Ok(vec![ball(radius, n, Facing::Left)?, level_disk(disk_radius, -h, true, n)?])
     })
 }
@@ -119,7 +125,7 @@ pub fn sphere_rectangle(case: &Case) -> Result<Answers, CaseError> {
     let corners = vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
     let rectangle =
         Polygon::new(corners).map_err(|source| CaseError::Polygon { what: "rectangle".to_string(), source })?;
-    factors(&RINGED, &[("F", 0, 1)], |n| Ok(vec![ball(radius, n, Facing::Left)?, vec![rectangle.clone()]]))
+    factors(&BALL, &[("F", 0, 1)], |n| Ok(vec![ball(radius, n, Facing::Left)?, vec![rectangle.clone()]]))
 }
 
 /// `concentric_spheres`.
