@@ -18,14 +18,27 @@ const SUDDEN: f64 = 0.1;
 
 /// Extrapolates values at these steps to step 0 by the polynomial in step^power through all of them (Richardson; Neville's scheme).
 ///
-/// The estimate is the larger of the last two corrections, doubled, plus the given error of the values themselves, amplified as the
-/// scheme amplifies it. One value is its own limit, of unknown error.
+/// The estimate is the largest of the last change, times ten, of a share of the change before, and of the difference to the polynomial in
+/// all powers of the step; plus the given error of the values themselves, amplified as the scheme amplifies it. One value is its
+/// own limit, of unknown error.
 pub fn extrapolate(steps: &[f64], values: &[f64], power: f64, value_error: f64) -> Limit {
-    let x: Vec<f64> = steps.iter().map(|step| step.powf(power)).collect();
     let n = values.len();
     if n < 2 {
         return Limit { value: values.first().copied().unwrap_or(f64::NAN), error: f64::INFINITY };
     }
+    let (best, noise) = neville(steps, values, power, value_error);
+    let value = best[n - 1];
+    let change = |k: usize| (best[k] - best[k - 1]).abs();
+    let last = change(n - 1).max(if n > 2 { SUDDEN * change(n - 2) } else { 0.0 });
+    let (other, _) = neville(steps, values, 1.0, value_error);
+    let odd = if power == 1.0 { 0.0 } else { (value - other[n - 1]).abs() };
+    Limit { value, error: (SAFETY * last).max(odd) + noise }
+}
+
+/// The extrapolations through the last 1, 2, … n values, and the noise of the last of them.
+fn neville(steps: &[f64], values: &[f64], power: f64, value_error: f64) -> (Vec<f64>, f64) {
+    let x: Vec<f64> = steps.iter().map(|step| step.powf(power)).collect();
+    let n = values.len();
     let mut column = values.to_vec();
     let mut noise = vec![value_error; n];
     let mut best = vec![column[n - 1]];
@@ -37,10 +50,7 @@ pub fn extrapolate(steps: &[f64], values: &[f64], power: f64, value_error: f64) 
         }
         best.push(column[n - 1 - k]);
     }
-    // The best of every order, against the one before it: the last change, or a share of the one before where that fell suddenly.
-    let change = |k: usize| (best[k] - best[k - 1]).abs();
-    let last = change(n - 1).max(if n > 2 { SUDDEN * change(n - 2) } else { 0.0 });
-    Limit { value: column[0], error: SAFETY * last + noise[0] }
+    (best, noise[0])
 }
 
 /// Computes lists of values at finer and finer resolutions, and extrapolates each of them: `compute(n)` at every n of `levels`, the step

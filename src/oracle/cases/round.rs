@@ -20,7 +20,10 @@ const RINGED: [usize; 5] = [8, 12, 16, 24, 32];
 const BALL: [usize; 5] = [16, 24, 32, 48, 64];
 
 /// Sectors where a pair takes adaptive quadrature around its occluders.
-const BLOCKED: [usize; 4] = [8, 12, 16, 24];
+const BLOCKED: [usize; 3] = [8, 12, 16];
+
+/// Sectors of balls within balls: both have the same facets, so that what they exchange has the ratio of their areas on any.
+const NESTED: [usize; 2] = [4, 6];
 
 /// Absolute error asked for of form factors past something round.
 const ROUND: f64 = 1e-8;
@@ -131,7 +134,7 @@ pub fn sphere_rectangle(case: &Case) -> Result<Answers, CaseError> {
 /// `concentric_spheres`.
 pub fn concentric_spheres(case: &Case) -> Result<Answers, CaseError> {
     let [inner, outer] = lengths(&case.geometry, ["r_inner", "r_outer"])?;
-    factors(&BLOCKED[..3], &[("F_12", 0, 1), ("F_21", 1, 0), ("F_22", 1, 1)], |n| {
+    factors(&NESTED, &[("F_12", 0, 1), ("F_21", 1, 0), ("F_22", 1, 1)], |n| {
         Ok(vec![ball(inner, n, Facing::Left)?, ball(outer, n, Facing::Right)?])
     })
 }
@@ -158,7 +161,7 @@ pub fn sphere_zones_blocked(case: &Case) -> Result<Answers, CaseError> {
     let [radius, inner] = lengths(&case.geometry, ["R", "r_inner"])?;
     let zones = [case.geometry.interval("zone_1_deg")?, case.geometry.interval("zone_2_deg")?];
     let open = |n| Ok(vec![zone(radius, zones[0], n)?, zone(radius, zones[1], n)?]);
-    let mut answers = factors(&BLOCKED[..3], &[("F_12", 0, 1)], |n| {
+    let mut answers = factors(&BLOCKED, &[("F_12", 0, 1)], |n| {
         let mut surfaces = open(n)?;
         surfaces.push(ball(inner, n, Facing::Left)?);
         Ok(surfaces)
