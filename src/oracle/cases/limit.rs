@@ -1,6 +1,7 @@
 //! Where a sequence of finer and finer polygons is heading.
 
 use super::error::CaseError;
+use crate::linalg::{Block, Dense, LuFactor};
 
 /// A limit and the error that is estimated for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,8 +19,8 @@ const SUDDEN: f64 = 0.1;
 
 /// Extrapolates values at these steps to step 0 by the polynomial in step^power through all of them (Richardson; Neville's scheme).
 ///
-/// The estimate is the largest of the last change, times ten, of a share of the change before, and of the difference to the polynomial in
-/// all powers of the step; plus the given error of the values themselves, amplified as the scheme amplifies it. One value is its
+/// The estimate is the largest of the last change, times ten, of a share of the change before, and of the difference to the polynomial
+/// that has a linear term in place of the highest power; plus the given error of the values themselves, amplified as the scheme amplifies it. One value is its
 /// own limit, of unknown error.
 pub fn extrapolate(steps: &[f64], values: &[f64], power: f64, value_error: f64) -> Limit {
     let n = values.len();
@@ -30,9 +31,23 @@ pub fn extrapolate(steps: &[f64], values: &[f64], power: f64, value_error: f64) 
     let value = best[n - 1];
     let change = |k: usize| (best[k] - best[k - 1]).abs();
     let last = change(n - 1).max(if n > 2 { SUDDEN * change(n - 2) } else { 0.0 });
-    let (other, _) = neville(steps, values, 1.0, value_error);
-    let odd = if power == 1.0 { 0.0 } else { (value - other[n - 1]).abs() };
+    let odd = if power == 1.0 || n < 3 { 0.0 } else { (value - with_linear_term(steps, values, power)).abs() };
     Limit { value, error: (SAFETY * last).max(odd) + noise }
+}
+
+/// The limit of the interpolant with the powers 0, 1, power, 2 power, … of the step; NaN where the steps do not determine it.
+fn with_linear_term(steps: &[f64], values: &[f64], power: f64) -> f64 {
+    let n = values.len();
+    let exponent = |j: usize| if j < 2 { j as f64 } else { power * (j - 1) as f64 };
+    let matrix = Dense::from_fn(n, n, |i, j| (steps[i] / steps[0]).powf(exponent(j)));
+    let mut x = Block::from_fn(n, 1, |i, _| values[i]);
+    match LuFactor::new(&matrix) {
+        Ok(factor) => {
+            factor.solve(&mut x);
+            x.get(0, 0)
+        }
+        Err(_) => f64::NAN,
+    }
 }
 
 /// The extrapolations through the last 1, 2, … n values, and the noise of the last of them.

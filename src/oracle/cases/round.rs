@@ -11,10 +11,10 @@ use crate::geometry::{Frame, Polygon, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Sectors where pairs are few: flat shapes facing each other.
-const FLAT: [usize; 6] = [12, 16, 24, 32, 48, 64];
+const FLAT: [usize; 6] = [16, 24, 32, 48, 64, 96];
 
 /// Sectors where shapes are cut into rings, too.
-const RINGED: [usize; 5] = [8, 12, 16, 24, 32];
+const RINGED: [usize; 5] = [12, 16, 20, 24, 32];
 
 /// Sectors of a ball seen from outside: planes of its facets cut what it sees.
 const BALL: [usize; 5] = [16, 24, 32, 48, 64];
