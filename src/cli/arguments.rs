@@ -28,7 +28,8 @@ pub struct Arguments {
     pub quiet: bool,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 ok, 4 input, 5 refused for memory, 6 not converged, 64 usage, 70 internal";
+const EXIT_CODES: &str =
+    "Exit codes: 0 ok, 2 check failed, 4 input, 5 refused for memory, 6 not converged, 64 usage, 70 internal";
 
 const SOLVE_EXAMPLES: &str = "\
 Examples:
@@ -49,6 +50,8 @@ pub enum Command {
     /// Solve a scene by one method and print its light field
     #[command(after_help = SOLVE_EXAMPLES)]
     Solve(Solve),
+    /// Answer reference cases and judge the answers
+    Check(Check),
     /// List the built-in scenes
     Gallery,
 }
@@ -118,6 +121,21 @@ pub struct Solve {
     /// End iterative solvers after this many products with K, converged or not
     #[arg(long, value_name = "N", value_parser = products, allow_negative_numbers = true)]
     pub max_products: Option<u64>,
+}
+
+/// Which cases.
+#[derive(Debug, Args)]
+pub struct Check {
+    /// JSON file of cases [default: those built into the gallery]
+    pub file: Option<PathBuf>,
+
+    /// Only cases of these groups
+    #[arg(long, value_name = "GROUP", value_delimiter = ',')]
+    pub group: Vec<String>,
+
+    /// Only these cases
+    #[arg(long, value_name = "ID", value_delimiter = ',')]
+    pub id: Vec<String>,
 }
 
 fn solver_names() -> Vec<&'static str> {

@@ -15,6 +15,7 @@ use std::process::ExitCode;
 /// Exit codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
+    Check = 2,
     Input = 4,
     Memory = 5,
     NotConverged = 6,

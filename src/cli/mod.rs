@@ -1,6 +1,7 @@
 //! Arguments in, exit codes out; the only room that prints.
 
 mod arguments;
+mod check;
 mod exit;
 mod gallery;
 mod memory;
@@ -42,6 +43,7 @@ fn run(arguments: &Arguments, command: Vec<String>) -> Result<(), Failure> {
     match &arguments.command {
         Command::Study(study) => study::run(arguments, study, command),
         Command::Solve(solve) => solve::run(arguments, solve, command),
+        Command::Check(check) => check::run(arguments, check),
         Command::Gallery => gallery::run(arguments),
     }
 }

@@ -6,6 +6,7 @@
 //! Lengths are metres; y is up, except between the parallel plates, which keep the coordinates of their reference.
 //! Closed scenes face inward, blocks in them outward, and nothing in a closed scene covers anything else.
 
+mod cases;
 pub mod cornell_box;
 pub mod corner_box;
 mod entry;
@@ -18,6 +19,7 @@ mod shape;
 pub mod spherical_crater;
 pub mod two_rooms;
 
+pub use cases::CASES;
 pub use cornell_box::cornell_box;
 pub use corner_box::corner_box;
 pub use entry::{Entry, closest, find, list};

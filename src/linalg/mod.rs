@@ -3,6 +3,7 @@
 mod block;
 mod dense;
 mod diagonal;
+mod eigen;
 mod equation;
 mod factor;
 mod matrix;
@@ -12,6 +13,7 @@ mod sparse;
 pub use block::{Block, max_abs, worst};
 pub use dense::Dense;
 pub use diagonal::Diagonal;
+pub use eigen::symmetric_eigenvalues;
 pub use equation::{Equation, SelfAdjoint};
 pub use factor::{CholeskyFactor, FactorError, LuFactor, NalgebraLu};
 pub use matrix::Matrix;

@@ -3,6 +3,7 @@
 // Reference values are given to more digits than an f64 holds.
 #![allow(clippy::excessive_precision, clippy::approx_constant, clippy::single_range_in_vec_init)]
 
+mod check;
 mod cli;
 mod compare;
 mod defects;

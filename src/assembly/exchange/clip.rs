@@ -16,7 +16,12 @@ pub enum Half {
 /// Cuts `polygon` by the plane of `plane` (Sutherland and Hodgman 1974). Corners within the rounding of their coordinates lie on
 /// the plane.
 pub fn in_front_of(polygon: &[Vec3], plane: &Polygon) -> Half {
-    let heights: Vec<f64> = polygon.iter().map(|v| height(plane, *v)).collect();
+    above(polygon, plane.centroid(), plane.normal())
+}
+
+/// The same for the plane through a point with this unit normal.
+pub fn above(polygon: &[Vec3], origin: Vec3, normal: Vec3) -> Half {
+    let heights: Vec<f64> = polygon.iter().map(|v| height(origin, normal, *v)).collect();
     if heights.iter().all(|h| *h <= 0.0) {
         return Half::Behind;
     }
@@ -37,11 +42,10 @@ pub fn in_front_of(polygon: &[Vec3], plane: &Polygon) -> Half {
     Half::Part(part)
 }
 
-fn height(plane: &Polygon, point: Vec3) -> f64 {
-    let offset = point - plane.centroid();
-    let height = plane.normal().dot(offset);
-    let rounding =
-        16.0 * f64::EPSILON * (point.abs().max_element() + plane.centroid().abs().max_element() + offset.length());
+fn height(origin: Vec3, normal: Vec3, point: Vec3) -> f64 {
+    let offset = point - origin;
+    let height = normal.dot(offset);
+    let rounding = 16.0 * f64::EPSILON * (point.abs().max_element() + origin.abs().max_element() + offset.length());
     if height.abs() <= rounding { 0.0 } else { height }
 }
 

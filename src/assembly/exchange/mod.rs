@@ -7,6 +7,7 @@ mod clip;
 mod closure;
 mod contour;
 mod lambert;
+mod point;
 mod quadrature;
 mod rules;
 mod shadow;
@@ -14,6 +15,7 @@ mod sinks;
 mod visibility;
 
 pub use closure::Repair;
+pub use point::{point_factor, point_factors};
 
 use crate::basis::{Bundles, Patch};
 use crate::geometry::{Polygon, Tracer};
