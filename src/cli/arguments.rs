@@ -28,8 +28,7 @@ pub struct Arguments {
     pub quiet: bool,
 }
 
-const EXIT_CODES: &str =
-    "Exit codes: 0 ok, 2 check failed, 4 input, 5 refused for memory, 6 not converged, 64 usage, 70 internal";
+const EXIT_CODES: &str = "Exit codes: 0 ok, 2 check failed, 4 input, 5 memory, 6 not converged, 64 usage, 70 internal";
 
 const SOLVE_EXAMPLES: &str = "\
 Examples:

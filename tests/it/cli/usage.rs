@@ -16,7 +16,8 @@ fn help_and_version_are_no_errors() {
         (Some(0), concat!("etendue ", env!("CARGO_PKG_VERSION"), "\n"))
     );
     let help = etendue(&["--help"]).stdout;
-    for words in ["Exit codes: 0 ok, 4 input, 5 refused for memory, 6 not converged, 64 usage, 70 internal", "gallery"]
+    for words in
+        ["Exit codes: 0 ok, 2 check failed, 4 input, 5 memory, 6 not converged, 64 usage, 70 internal", "gallery"]
     {
         assert!(help.contains(words), "{help}");
     }
