@@ -3,6 +3,14 @@
 use super::{Polygon, Vec3};
 use std::f64::consts::FRAC_1_SQRT_2;
 
+/// Signed height of a point above the plane through `on_plane`; zero within the rounding of the coordinates.
+pub fn height(normal: Vec3, on_plane: Vec3, point: Vec3) -> f64 {
+    let offset = point - on_plane;
+    let height = normal.dot(offset);
+    let rounding = 16.0 * f64::EPSILON * (point.abs().max_element() + on_plane.abs().max_element() + offset.length());
+    if height.abs() <= rounding { 0.0 } else { height }
+}
+
 /// A number for every polygon, equal where two lie in one plane (facing alike or opposite) to within the rounding of their
 /// coordinates. Cost O(n log n) unless many planes nearly coincide.
 pub fn group_by_plane(polygons: &[&Polygon]) -> Vec<u32> {

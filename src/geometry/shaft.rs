@@ -1,6 +1,6 @@
 //! Can anything stand between two polygons? Decided once for the pair, before any ray.
 
-use super::{Polygon, Tracer, Vec3};
+use super::{Polygon, Tracer, Vec3, height};
 
 /// What lies in the convex hull of two polygons.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,12 +90,4 @@ fn side_planes(a: &Polygon, b: &Polygon) -> Vec<(Vec3, Vec3)> {
         }
     }
     planes
-}
-
-/// Signed height of a point above a plane; zero within the rounding of the coordinates.
-fn height(normal: Vec3, on_plane: Vec3, point: Vec3) -> f64 {
-    let offset = point - on_plane;
-    let height = normal.dot(offset);
-    let rounding = 16.0 * f64::EPSILON * (point.abs().max_element() + on_plane.abs().max_element() + offset.length());
-    if height.abs() <= rounding { 0.0 } else { height }
 }

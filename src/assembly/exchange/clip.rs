@@ -1,6 +1,6 @@
 //! The part of a polygon in front of a plane.
 
-use crate::geometry::{Polygon, Vec3};
+use crate::geometry::{Polygon, Vec3, height};
 
 /// How a polygon lies to a plane.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +21,7 @@ pub fn in_front_of(polygon: &[Vec3], plane: &Polygon) -> Half {
 
 /// The same for the plane through a point with this unit normal.
 pub fn above(polygon: &[Vec3], origin: Vec3, normal: Vec3) -> Half {
-    let heights: Vec<f64> = polygon.iter().map(|v| height(origin, normal, *v)).collect();
+    let heights: Vec<f64> = polygon.iter().map(|v| height(normal, origin, *v)).collect();
     if heights.iter().all(|h| *h <= 0.0) {
         return Half::Behind;
     }
@@ -40,13 +40,6 @@ pub fn above(polygon: &[Vec3], origin: Vec3, normal: Vec3) -> Half {
         }
     }
     Half::Part(part)
-}
-
-fn height(origin: Vec3, normal: Vec3, point: Vec3) -> f64 {
-    let offset = point - origin;
-    let height = normal.dot(offset);
-    let rounding = 16.0 * f64::EPSILON * (point.abs().max_element() + origin.abs().max_element() + offset.length());
-    if height.abs() <= rounding { 0.0 } else { height }
 }
 
 #[cfg(test)]
