@@ -6,7 +6,7 @@ mod measurement;
 mod operators;
 mod system;
 
-pub use exchange::{Exchange, ExchangeReport, Occlusion, Repair, point_factor, point_factors};
+pub use exchange::{Exchange, ExchangeReport, Occlusion, Repair, RepairMethod, point_factor, point_factors};
 pub use laws::Laws;
 pub use measurement::{Gather, Measurement};
 pub use operators::{Propagation, Transport};

@@ -1,6 +1,6 @@
 //! The assembled equation of one scene at one resolution.
 
-use super::exchange::{self, Exchange, ExchangeReport};
+use super::exchange::{self, Exchange, ExchangeReport, RepairMethod};
 use super::{Laws, Propagation, Transport};
 use crate::basis::{Bundles, Element};
 use crate::linalg::{Block, Diagonal, Equation, LinearOperator, Matrix, SelfAdjoint};
@@ -19,6 +19,7 @@ pub struct System {
     transport: Transport,
     scattering_root: Diagonal,
     repair_scale: Vec<f64>,
+    is_self_adjoint: bool,
     report: ExchangeReport,
 }
 
@@ -86,7 +87,7 @@ pub fn assemble_watched(
     let propagation = Propagation::new(exchange.clone(), etendue.clone());
     let transport = Transport::new(Diagonal::new(albedo), propagation);
     let scattering_root = Diagonal::new(root);
-    Ok(System { exchange, etendue, sinks, emission, transport, scattering_root, repair_scale, report })
+    Ok(System { exchange, etendue, sinks, emission, transport, scattering_root, repair_scale, is_self_adjoint: true, report })
 }
 
 impl System {
@@ -142,7 +143,7 @@ impl System {
             return self.clone();
         }
         let mut exchange = (*self.exchange).clone();
-        exchange.scale_symmetric(&inverse);
+        exchange.map_entries(|r, c, t| t * (inverse[r] * inverse[c]));
         let exchange = Arc::new(exchange);
         let propagation = Propagation::new(exchange.clone(), self.etendue.clone());
         let sinks = Block::from_fn(self.n_bundles(), 2, |i, sink| self.sinks.get(i, sink) * inverse[i]);
@@ -156,6 +157,30 @@ impl System {
         }
     }
 
+    /// The unrepaired system closed by another method, and the sweeps it took. A system closed by rows is not self-adjoint. Copies T.
+    pub fn repaired_by(&self, method: RepairMethod) -> (Self, usize) {
+        let raw = self.without_repair();
+        let (mut exchange, mut sinks) = ((*raw.exchange).clone(), raw.sinks.clone());
+        let sweeps = exchange::repair_by(method, &mut exchange, &mut sinks, &raw.etendue);
+        let exchange = Arc::new(exchange);
+        // G of scaled rows is M⁻¹ D T: the T that is still symmetric over its own row sums.
+        let propagation = match method {
+            RepairMethod::Rows => Propagation::new(raw.exchange.clone(), raw.row_totals().into()),
+            _ => Propagation::new(exchange.clone(), self.etendue.clone()),
+        };
+        let transport = Transport::new(self.transport.scattering().clone(), propagation);
+        let is_self_adjoint = method != RepairMethod::Rows;
+        (Self { exchange, sinks, transport, is_self_adjoint, ..raw }, sweeps)
+    }
+
+    /// Σⱼ Tᵢⱼ + sinksᵢ, m² sr.
+    fn row_totals(&self) -> Vec<f64> {
+        let n = self.n_bundles();
+        let mut flow = Block::zeros(n, 1);
+        self.exchange.apply(&Block::from_fn(n, 1, |_, _| 1.0), &mut flow);
+        (0..n).map(|i| flow.get(i, 0) + self.sinks.row(i).sum::<f64>()).collect()
+    }
+
     /// The four laws, as they hold in the matrices. Cost O(entries).
     pub fn laws(&self) -> Laws {
         Laws::measure(self)
@@ -166,7 +191,7 @@ impl System {
         Equation {
             transport: &self.transport,
             emission: &self.emission,
-            self_adjoint: Some(SelfAdjoint {
+            self_adjoint: self.is_self_adjoint.then(|| SelfAdjoint {
                 etendue: &self.etendue,
                 propagation: self.transport.propagation(),
                 scattering_root: &self.scattering_root,

@@ -3,6 +3,7 @@
 //! All coordinates are f64 metres. A polygon's front is the side from which its vertices run counter-clockwise.
 
 mod frame;
+mod hull;
 mod plane;
 mod polygon;
 mod ray;
@@ -10,6 +11,7 @@ mod shaft;
 mod tracer;
 
 pub use frame::Frame;
+pub use hull::convex_hull;
 pub use glam::{DAffine3 as Affine3, DMat3 as Mat3, DMat4 as Mat4, DVec2 as Vec2, DVec3 as Vec3};
 pub use plane::height;
 pub use polygon::{PLANARITY_TOLERANCE, Polygon, PolygonError};

@@ -40,16 +40,15 @@ impl Matrix {
         Self::Sparse(Sparse::from_rows(n, &rows))
     }
 
-    /// Entry (r, c) ← entry · (d_r d_c): symmetric stays symmetric, bit for bit.
-    pub fn scale_symmetric(&mut self, d: &[f64]) {
+    /// Entry (r, c) ← map(r, c, entry), for the stored entries.
+    pub fn map_entries(&mut self, map: impl Fn(usize, usize, f64) -> f64 + Sync) {
         match self {
             Self::Dense(dense) => {
-                let n = d.len().max(1);
-                dense.values_mut().par_chunks_mut(n).zip(d).for_each(|(row, dr)| {
-                    row.iter_mut().zip(d).for_each(|(v, dc)| *v *= dr * dc);
-                });
+                let n = dense.n_columns().max(1);
+                let rows = dense.values_mut().par_chunks_mut(n).enumerate();
+                rows.for_each(|(r, row)| row.iter_mut().enumerate().for_each(|(c, v)| *v = map(r, c, *v)));
             }
-            Self::Sparse(sparse) => sparse.scale_symmetric(d),
+            Self::Sparse(sparse) => sparse.map_entries(map),
         }
     }
 

@@ -45,14 +45,15 @@ impl Sparse {
         (&self.0.indices()[range.clone()], &self.0.data()[range])
     }
 
-    /// Entry (r, c) ← entry · d_r · d_c.
-    pub(super) fn scale_symmetric(&mut self, d: &[f64]) {
+    /// Entry (r, c) ← map(r, c, entry), for the stored entries.
+    pub(super) fn map_entries(&mut self, map: impl Fn(usize, usize, f64) -> f64) {
+        let n_rows = self.0.rows();
         let starts = self.0.indptr().raw_storage().to_vec();
         let columns = self.0.indices().to_vec();
         let values = self.0.data_mut();
-        for r in 0..d.len() {
+        for r in 0..n_rows {
             for k in starts[r]..starts[r + 1] {
-                values[k] *= d[r] * d[columns[k] as usize];
+                values[k] = map(r, columns[k] as usize, values[k]);
             }
         }
     }

@@ -5,23 +5,28 @@
 
 mod clip;
 mod closure;
+mod cluster;
 mod contour;
 mod lambert;
+mod openings;
 mod point;
 mod quadrature;
+mod repair;
 mod rules;
 mod shadow;
 mod sinks;
 mod visibility;
 
-pub use closure::Repair;
 pub use point::{point_factor, point_factors};
+pub use repair::{Repair, RepairMethod};
+pub(super) use repair::repair_by;
 
 use crate::basis::{Bundles, Patch};
 use crate::geometry::{Polygon, Tracer};
 use crate::linalg::{Block, Matrix};
 use crate::sampling::mix;
 use crate::scene::Scene;
+use cluster::{Clusters, View};
 use quadrature::{Ladder, Nodes};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -69,11 +74,13 @@ pub enum Occlusion {
 /// How the entries of T came about.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ExchangeReport {
+    /// Pairs of patches that whole clusters settled at once: averted, hidden or clear.
+    pub n_by_clusters: usize,
     /// Pairs of patches that face each other.
     pub n_pairs: usize,
     /// Of these: proved clear, so right to the quadrature's error.
     pub n_clear: usize,
-    /// Of these: proved hidden.
+    /// Of these: proved hidden, one by one or as whole clusters.
     pub n_hidden: usize,
     /// Of these: what is blocked integrated.
     pub n_integrated: usize,
@@ -136,6 +143,7 @@ pub(super) fn compute(
     let etendue = bundles.etendue();
     let ladder = Ladder::new();
     let nodes: Vec<Nodes> = patches.par_iter().map(|patch| ladder.nodes(&patch.polygon)).collect();
+    let clusters = Clusters::new(&patches, &polygons, &occluders);
 
     // Visit the upper triangle row by row; long rows first, so that threads finish together.
     let n = patches.len();
@@ -144,7 +152,7 @@ pub(super) fn compute(
         .into_par_iter()
         .with_max_len(1)
         .map(|i| {
-            let row = upper_row(&patches, (&ladder, &nodes), etendue, &occluders, settings, i);
+            let row = upper_row(&patches, &clusters, (&ladder, &nodes), etendue, &occluders, settings, i);
             let finished = done.fetch_add(n - i, Ordering::Relaxed) + (n - i);
             progress(0.95 * finished as f64 / (0.5 * (n * (n + 1)) as f64));
             row
@@ -177,6 +185,10 @@ pub(super) fn compute(
             variance[entry.column as usize] += entry.variance;
         }
     }
+    let census = clusters.census;
+    report.n_by_clusters = census.n_averted + census.n_hidden + census.n_clear;
+    report.n_pairs += census.n_hidden;
+    report.n_hidden += census.n_hidden;
     report.n_sampled = report.n_pairs - report.n_clear - report.n_hidden - report.n_integrated;
     let relative: f64 = variance.iter().zip(etendue).map(|(v, mu)| v / (mu * mu)).sum();
     report.visibility_error = (relative / n.max(1) as f64).sqrt();
@@ -195,7 +207,7 @@ pub(super) fn compute(
     }
     let mut repair_scale = Vec::new();
     if settings.repair {
-        let (repair, scale) = closure::repair(&mut exchange, &mut sinks, etendue);
+        let (repair, scale) = repair::repair(&mut exchange, &mut sinks, etendue);
         (report.repair, repair_scale) = (Some(repair), scale);
     }
     progress(1.0);
@@ -205,6 +217,7 @@ pub(super) fn compute(
 /// The pairs (i, j), j > i, that exchange anything.
 fn upper_row(
     patches: &[&Patch],
+    clusters: &Clusters,
     (ladder, nodes): (&Ladder, &[Nodes]),
     etendue: &[f64],
     occluders: &Tracer,
@@ -214,20 +227,22 @@ fn upper_row(
     let mut tally = Tally::default();
     let mut row = Vec::new();
     let a = patches[i];
-    for j in i + 1..patches.len() {
+    clusters.for_each_partner(i, |j, view| {
         let b = patches[j];
-        if occluders.coplanar(a.facet, b.facet) {
-            continue;
-        }
         let pair = quadrature::unoccluded(ladder, (&a.polygon, &nodes[i]), (&b.polygon, &nodes[j]), settings.tolerance);
-        let Some((exchange, error)) = pair else { continue };
+        let Some((exchange, error)) = pair else { return };
         tally.n_pairs += 1;
         tally.quadrature_error = tally.quadrature_error.max(error / exchange);
+        let View::Open(candidates) = view else {
+            tally.n_clear += 1;
+            row.push(Entry { column: j as u32, value: exchange, variance: 0.0 });
+            return;
+        };
 
         let key = mix(&[settings.seed, 0, i as u64, j as u64]);
         let ends =
             [(a, i), (b, j)].map(|(patch, k)| End { polygon: &patch.polygon, facet: patch.facet, etendue: etendue[k] });
-        match visibility::between(occluders, ends[0], ends[1], settings.occlusion, settings.visibility_rays, key) {
+        match visibility::between(occluders, candidates, ends, settings.occlusion, settings.visibility_rays, key) {
             Visibility::Full => {
                 tally.n_clear += 1;
                 row.push(Entry { column: j as u32, value: exchange, variance: 0.0 });
@@ -245,6 +260,7 @@ fn upper_row(
                 row.push(Entry { column: j as u32, value: share * exchange, variance });
             }
         }
-    }
+    });
+    row.sort_unstable_by_key(|entry| entry.column);
     (row, tally)
 }

@@ -32,8 +32,15 @@ pub struct End<'a> {
 ///
 /// The share is Σ k V / Σ k, k the kernel cosθ cosθ'/r² of each ray and V whether it gets through. Its variance is that of the
 /// weighted mean with half a ray added to each outcome, so that no finite number of rays claims certainty.
-pub fn between(occluders: &Tracer, a: End, b: End, occlusion: Occlusion, n_rays: usize, key: u64) -> Visibility {
-    let handles = match Shaft::between(occluders, (a.polygon, a.facet), (b.polygon, b.facet)) {
+pub fn between(
+    occluders: &Tracer,
+    candidates: &[u32],
+    [a, b]: [End; 2],
+    occlusion: Occlusion,
+    n_rays: usize,
+    key: u64,
+) -> Visibility {
+    let handles = match Shaft::among(occluders, Some(candidates), (a.polygon, a.facet), (b.polygon, b.facet)) {
         Shaft::Clear => return Visibility::Full,
         Shaft::Blocked => return Visibility::None,
         Shaft::Undecided(handles) => handles,

@@ -1,0 +1,101 @@
+//! Where light can leave a scene: what of its convex hull no surface covers.
+//!
+//! Between two points of the scene a ray stays inside the hull, so what leaves a patch for good passes an opening, and what passes an
+//! opening never comes back: étendue that escapes is exchange with the openings, and is computed like any other.
+
+use super::clip::{Half, above};
+use crate::geometry::{Polygon, Vec3, convex_hull, height};
+
+/// Openings smaller than this share of the hull are seams between surfaces that meet within the rounding of their corners.
+const SEAM: f64 = 1e-12;
+
+/// The uncovered parts of the hull's faces, fronts inward. Cost O(corners · hull faces).
+pub fn openings(facets: &[&Polygon]) -> Vec<Polygon> {
+    let mut points: Vec<Vec3> = facets.iter().flat_map(|facet| facet.vertices()).copied().collect();
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z)));
+    points.dedup();
+    let faces = convex_hull(&points);
+    let area = |[a, b, c]: [Vec3; 3]| 0.5 * (b - a).cross(c - a).length();
+    let corners = |face: &[usize; 3]| face.map(|k| points[k]);
+    let hull: f64 = faces.iter().map(|face| area(corners(face))).sum();
+
+    let mut found = Vec::new();
+    for face in &faces {
+        // Turn it inward; slivers of flat faces are seams.
+        let [a, b, c] = corners(face);
+        if area([a, b, c]) <= SEAM * hull {
+            continue;
+        }
+        let Ok(face) = Polygon::new(vec![a, c, b]) else { continue };
+        let mut left = vec![face.vertices().to_vec()];
+        for facet in facets.iter().filter(|facet| covers(facet, &face)) {
+            left = left.into_iter().flat_map(|piece| outside(piece, facet)).collect();
+        }
+        let pieces = left.into_iter().filter_map(|piece| Polygon::new(piece).ok());
+        found.extend(pieces.filter(|piece| piece.area() > SEAM * hull));
+    }
+    found
+}
+
+/// True if the facet lies in the plane of a face of the hull. The corners of either are in the plane of the other's within rounding;
+/// of a large and a small one, that of the large is the better known.
+fn covers(facet: &Polygon, face: &Polygon) -> bool {
+    let (large, small) = if facet.area() > face.area() { (facet, face) } else { (face, facet) };
+    small.vertices().iter().all(|v| height(large.normal(), large.centroid(), *v) == 0.0)
+}
+
+/// What of a convex piece lies outside a facet in its plane: convex pieces.
+fn outside(piece: Vec<Vec3>, facet: &Polygon) -> Vec<Vec<Vec3>> {
+    let v = facet.vertices();
+    let mut left = Vec::new();
+    let mut rest = piece;
+    for k in 0..v.len() {
+        let outward = (v[(k + 1) % v.len()] - v[k]).cross(facet.normal()).normalize();
+        match above(&rest, v[k], outward) {
+            Half::Behind => {}
+            Half::InFront => {
+                left.push(rest);
+                return left;
+            }
+            Half::Part(part) => {
+                left.push(part);
+                match above(&rest, v[k], -outward) {
+                    Half::Part(part) => rest = part,
+                    Half::Behind | Half::InFront => return left,
+                }
+            }
+        }
+    }
+    left
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gallery;
+    use crate::geometry::Mat3;
+
+    /// Openings of a scene of the gallery, turned: their number and area.
+    fn of(name: &str, turn: Mat3) -> (usize, f64) {
+        let scene = (gallery::find(name).expect("a scene of the gallery").build)();
+        let turned = |f| Polygon::new(scene.polygon(f).vertices().iter().map(|v| turn * *v).collect());
+        let facets: Vec<Polygon> = (0..scene.facets().len()).map(|f| turned(f).expect("still a polygon")).collect();
+        let openings = openings(&facets.iter().collect::<Vec<_>>());
+        (openings.len(), openings.iter().map(Polygon::area).sum())
+    }
+
+    #[test]
+    fn a_closed_room_has_none_and_the_cornell_box_has_its_front() {
+        for turn in [Mat3::IDENTITY, Mat3::from_rotation_x(0.3) * Mat3::from_rotation_z(1.1)] {
+            for name in ["furnace-cube", "corner-box", "two-rooms"] {
+                assert_eq!(of(name, turn), (0, 0.0), "{name}");
+            }
+            // The front of a room of 2 by 2; corners are rounded to some ulp.
+            let (_, area) = of("cornell-box", turn);
+            assert!((area - 4.0).abs() < 1e-12, "{area}");
+            // Between two unit squares at a distance of 1: the four sides of the cube.
+            let (_, area) = of("parallel-plates", turn);
+            assert!((area - 4.0).abs() < 1e-12, "{area}");
+        }
+    }
+}
