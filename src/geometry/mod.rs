@@ -2,6 +2,7 @@
 //!
 //! All coordinates are f64 metres. A polygon's front is the side from which its vertices run counter-clockwise.
 
+mod cover;
 mod frame;
 mod hull;
 mod plane;

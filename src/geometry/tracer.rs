@@ -150,8 +150,8 @@ impl Tracer {
         })
     }
 
-    /// Calls `visit(handle, id, corners)` for every polygon whose box meets the box of these points, each once.
-    pub(super) fn near(&self, points: impl Iterator<Item = Vec3>, mut visit: impl FnMut(u32, usize, &[Vec3])) {
+    /// Calls `visit(handle)` for every polygon whose box meets the box of these points, each once.
+    pub(super) fn near(&self, points: impl IntoIterator<Item = Vec3>, mut visit: impl FnMut(u32)) {
         let mut bounds = Aabb::empty();
         for p in points {
             // Grown by what rounding to f32 may have moved the point: a shaft can be far larger than what stands in it.
@@ -162,18 +162,24 @@ impl Tracer {
         }
         self.tree.aabb_traverse(bounds, |tree, node| {
             let node = &tree.nodes[node as usize];
-            for k in node.first_index..node.first_index + node.prim_count {
-                let shape = &self.shapes[k as usize];
-                visit(k, shape.id as usize, &shape.vertices);
-            }
+            (node.first_index..node.first_index + node.prim_count).for_each(&mut visit);
             true
         });
     }
 
-    /// Normal and one point of the plane of a polygon, by handle.
-    pub(super) fn plane_of(&self, handle: u32) -> (Vec3, Vec3) {
-        let shape = &self.shapes[handle as usize];
-        (shape.normal, shape.vertices[0])
+    /// Unit normal of a polygon, by handle.
+    pub(super) fn normal_of(&self, handle: u32) -> Vec3 {
+        self.shapes[handle as usize].normal
+    }
+
+    /// Number of a polygon's plane, by handle.
+    pub(super) fn plane_of(&self, handle: u32) -> u32 {
+        self.shapes[handle as usize].plane
+    }
+
+    /// Number of the plane of polygon `id` of the list the tracer was made from.
+    pub(super) fn plane_number(&self, id: usize) -> u32 {
+        self.planes[id]
     }
 
     /// Corners of a polygon, by handle.
