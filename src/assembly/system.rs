@@ -87,7 +87,17 @@ pub fn assemble_watched(
     let propagation = Propagation::new(exchange.clone(), etendue.clone());
     let transport = Transport::new(Diagonal::new(albedo), propagation);
     let scattering_root = Diagonal::new(root);
-    Ok(System { exchange, etendue, sinks, emission, transport, scattering_root, repair_scale, is_self_adjoint: true, report })
+    Ok(System {
+        exchange,
+        etendue,
+        sinks,
+        emission,
+        transport,
+        scattering_root,
+        repair_scale,
+        is_self_adjoint: true,
+        report,
+    })
 }
 
 impl System {

@@ -12,9 +12,9 @@ mod shaft;
 mod tracer;
 
 pub use frame::Frame;
-pub use hull::convex_hull;
 pub use glam::{DAffine3 as Affine3, DMat3 as Mat3, DMat4 as Mat4, DVec2 as Vec2, DVec3 as Vec3};
-pub use plane::height;
+pub use hull::{convex_hull, convex_hull_in_plane};
+pub use plane::{group_by_plane, height};
 pub use polygon::{PLANARITY_TOLERANCE, Polygon, PolygonError};
 pub use ray::Ray;
 pub use shaft::Shaft;

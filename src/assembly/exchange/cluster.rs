@@ -9,8 +9,8 @@
 //! Wallace (1991), "Shaft culling" (inherited candidates).
 
 use super::clip::{Half, in_front_of};
-use crate::basis::Patch;
-use crate::geometry::{Polygon, Shaft, Tracer, Vec3};
+use super::visibility::End;
+use crate::geometry::{Polygon, Shaft, Tracer, Vec3, convex_hull_in_plane};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -19,6 +19,8 @@ const LEAF: usize = 4;
 
 /// The clusters of a scene's patches, and how each sees the others.
 pub struct Clusters {
+    /// The first ends; the others are sinks.
+    n_sources: usize,
     nodes: Vec<Node>,
     /// Patches, cluster by cluster.
     members: Vec<u32>,
@@ -52,7 +54,7 @@ pub enum View {
     Open(Box<[u32]>),
 }
 
-/// How many pairs clusters settled.
+/// How many pairs of sources clusters settled.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Census {
     /// Pairs of which one lies behind the other, or in its plane.
@@ -62,13 +64,15 @@ pub struct Census {
 }
 
 impl Clusters {
-    /// Builds the clusters and links them. Patches come facet by facet, side by side, as [`Bundles`](crate::basis::Bundles) number
-    /// them. Cost O(n log n) for the clusters; the links grow with the length of the borders between light and shadow, not with n².
-    pub fn new(patches: &[&Patch], facets: &[&Polygon], occluders: &Tracer) -> Self {
+    /// Builds the clusters and links them, but not those that hold none of the first `n_sources` ends: sinks exchange nothing with
+    /// each other. Ends come facet by facet, side by side, as [`Bundles`](crate::basis::Bundles) number them. Cost O(n log n) for
+    /// the clusters; the links grow with the length of the borders between light and shadow, not with n².
+    pub fn new(ends: &[End], n_sources: usize, facets: &[&Polygon], occluders: &Tracer) -> Self {
         let mut clusters = Self {
+            n_sources,
             nodes: Vec::new(),
-            members: (0..patches.len() as u32).collect(),
-            leaf_of: vec![0; patches.len()],
+            members: (0..ends.len() as u32).collect(),
+            leaf_of: vec![0; ends.len()],
             links: Vec::new(),
             census: Census::default(),
         };
@@ -76,16 +80,20 @@ impl Clusters {
         // Halve every side of every facet.
         let mut roots = Vec::new();
         let mut start = 0;
-        for group in patches.chunk_by(|a, b| a.facet == b.facet && a.side == b.side) {
+        let is_same_side = |a: &End, b: &End| a.facet == b.facet && a.polygon.normal().dot(b.polygon.normal()) > 0.0;
+        for group in ends.chunk_by(is_same_side) {
             let facet = facets[group[0].facet];
-            let polygon = if group[0].polygon.normal().dot(facet.normal()) > 0.0 { facet.clone() } else { facet.flipped() };
-            roots.push(clusters.grow(patches, polygon, group[0].facet, start..start + group.len(), None));
+            let is_front = group[0].polygon.normal().dot(facet.normal()) > 0.0;
+            let polygon = if is_front { facet.clone() } else { facet.flipped() };
+            let root = clusters.grow(ends, polygon, group[0].facet, start..start + group.len(), None);
+            roots.push((root, start < n_sources));
             start += group.len();
         }
 
         // Link the halves of every two.
-        let pairs: Vec<(u32, u32)> =
-            roots.iter().enumerate().flat_map(|(k, &a)| roots[k + 1..].iter().map(move |&b| (a, b))).collect();
+        let later = |k: usize| roots[k + 1..].iter().map(|(root, _)| *root);
+        let sources = roots.iter().enumerate().filter(|(_, (_, is_source))| *is_source);
+        let pairs: Vec<(u32, u32)> = sources.flat_map(|(k, (root, _))| later(k).map(move |b| (*root, b))).collect();
         let linked: Vec<(Vec<(u32, Link)>, Census)> = pairs
             .into_par_iter()
             .with_max_len(1)
@@ -120,22 +128,22 @@ impl Clusters {
     /// Makes the cluster of these members, and its halves; returns its number.
     fn grow(
         &mut self,
-        patches: &[&Patch],
+        ends: &[End],
         polygon: Polygon,
         facet: usize,
         members: Range<usize>,
         parent: Option<u32>,
     ) -> u32 {
         let number = self.nodes.len() as u32;
-        let halves = if members.len() > LEAF { self.halve(patches, &polygon, members.clone()) } else { None };
+        let halves = if members.len() > LEAF { self.halve(ends, &polygon, members.clone()) } else { None };
         self.nodes.push(Node { polygon, facet, members: members.clone(), parent, halves: None });
         match halves {
             Some([(a, of_a), (b, of_b)]) => {
-                let a = self.grow(patches, a, facet, of_a, Some(number));
-                let b = self.grow(patches, b, facet, of_b, Some(number));
+                let a = self.grow(ends, a, facet, of_a, Some(number));
+                let b = self.grow(ends, b, facet, of_b, Some(number));
                 self.nodes[number as usize].halves = Some([a, b]);
             }
-            None => self.members[members].iter().for_each(|&patch| self.leaf_of[patch as usize] = number),
+            None => self.members[members].iter().for_each(|&end| self.leaf_of[end as usize] = number),
         }
         number
     }
@@ -143,16 +151,16 @@ impl Clusters {
     /// Parts the members in the middle of the polygon's longer extent; `None` where a half has no polygon.
     fn halve(
         &mut self,
-        patches: &[&Patch],
+        ends: &[End],
         polygon: &Polygon,
         members: Range<usize>,
     ) -> Option<[(Polygon, Range<usize>); 2]> {
         let axis = longer_axis(polygon);
-        let height = |patch: u32| axis.dot(patches[patch as usize].polygon.centroid() - polygon.centroid());
+        let height = |end: u32| axis.dot(ends[end as usize].polygon.centroid() - polygon.centroid());
         self.members[members.clone()].sort_by(|a, b| height(*a).total_cmp(&height(*b)).then(a.cmp(b)));
         let hull = |range: Range<usize>| {
-            let corners = self.members[range.clone()].iter().flat_map(|&m| patches[m as usize].polygon.vertices());
-            Some((Polygon::new(convex_hull(corners.copied(), polygon)).ok()?, range))
+            let corners = self.members[range.clone()].iter().flat_map(|&m| ends[m as usize].polygon.vertices());
+            Some((Polygon::new(convex_hull_in_plane(corners.copied(), polygon.normal())).ok()?, range))
         };
         let middle = members.start + members.len() / 2;
         Some([hull(members.start..middle)?, hull(middle..members.end)?])
@@ -169,6 +177,7 @@ impl Clusters {
         let (one, other) = (&self.nodes[a as usize], &self.nodes[b as usize]);
         let n_pairs = one.members.len() * other.members.len();
         let (links, census) = found;
+        let n_pairs = if one.members.end.max(other.members.end) > self.n_sources { 0 } else { n_pairs };
         if occluders.coplanar(one.facet, other.facet) {
             census.n_averted += n_pairs;
             return;
@@ -180,7 +189,12 @@ impl Clusters {
             return;
         }
         let is_facing = matches!(sides, (Half::InFront, Half::InFront));
-        match Shaft::among(occluders, candidates, (&one.polygon, one.facet), (&other.polygon, other.facet)) {
+        let ends = [(&one.polygon, one.facet), (&other.polygon, other.facet)];
+        let shaft = match candidates {
+            None => Shaft::between(occluders, ends[0], ends[1]),
+            Some(candidates) => Shaft::among(occluders, candidates, ends[0], ends[1]),
+        };
+        match shaft {
             Shaft::Blocked => census.n_hidden += n_pairs,
             Shaft::Clear => {
                 census.n_clear += n_pairs;
@@ -222,33 +236,4 @@ fn longer_axis(polygon: &Polygon) -> Vec3 {
     };
     // A tie goes to the edge, not to rounding.
     if extent(across) > (1.0 + 1e-9) * extent(along) { across } else { along }
-}
-
-/// Corners of the convex hull of points in the plane of `plane`, counter-clockwise (Andrew 1979, the monotone chain), on a grid of
-/// 2⁵⁰ steps across the points, so that every orientation is exact.
-fn convex_hull(points: impl Iterator<Item = Vec3> + Clone, plane: &Polygon) -> Vec<Vec3> {
-    let origin = plane.centroid();
-    let (right, up) = plane.normal().any_orthonormal_pair();
-    let reach = points.clone().map(|p| (p - origin).abs().max_element()).fold(f64::MIN_POSITIVE, f64::max);
-    let step = |x: f64| (x / reach * (1u64 << 49) as f64) as i64;
-    let mut sorted: Vec<(i64, i64, Vec3)> =
-        points.map(|p| (step(right.dot(p - origin)), step(up.dot(p - origin)), p)).collect();
-    sorted.sort_by_key(|(x, y, _)| (*x, *y));
-    sorted.dedup_by_key(|(x, y, _)| (*x, *y));
-    let turns_left = |a: &(i64, i64, Vec3), b: &(i64, i64, Vec3), c: &(i64, i64, Vec3)| {
-        i128::from(b.0 - a.0) * i128::from(c.1 - b.1) > i128::from(b.1 - a.1) * i128::from(c.0 - b.0)
-    };
-    let chain = |points: &mut dyn Iterator<Item = &(i64, i64, Vec3)>| {
-        let mut chain: Vec<(i64, i64, Vec3)> = Vec::new();
-        for point in points {
-            while chain.len() >= 2 && !turns_left(&chain[chain.len() - 2], &chain[chain.len() - 1], point) {
-                chain.pop();
-            }
-            chain.push(*point);
-        }
-        chain.pop();
-        chain
-    };
-    let (lower, upper) = (chain(&mut sorted.iter()), chain(&mut sorted.iter().rev()));
-    lower.into_iter().chain(upper).map(|(_, _, p)| p).collect()
 }

@@ -18,10 +18,10 @@ mod sinks;
 mod visibility;
 
 pub use point::{point_factor, point_factors};
-pub use repair::{Repair, RepairMethod};
 pub(super) use repair::repair_by;
+pub use repair::{Repair, RepairMethod};
 
-use crate::basis::{Bundles, Patch};
+use crate::basis::Bundles;
 use crate::geometry::{Polygon, Tracer};
 use crate::linalg::{Block, Matrix};
 use crate::sampling::mix;
@@ -29,6 +29,7 @@ use crate::scene::Scene;
 use cluster::{Clusters, View};
 use quadrature::{Ladder, Nodes};
 use rayon::prelude::*;
+use sinks::{Lost, Sink};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use visibility::{End, Visibility};
 
@@ -136,66 +137,80 @@ pub(super) fn compute(
     settings: Exchange,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Assembled, Overfull> {
-    let polygons: Vec<&Polygon> = (0..scene.facets().len()).map(|facet| scene.polygon(facet)).collect();
-    let occluders = Tracer::occluders(&polygons);
-    let everything = Tracer::new(&polygons);
-    let patches: Vec<&Patch> = (0..bundles.elements().len()).filter_map(|e| bundles.patch(e)).collect();
+    // Name everything that light can end on: patches, and of sinks those that are computed like patches.
+    let facets: Vec<&Polygon> = (0..scene.facets().len()).map(|facet| scene.polygon(facet)).collect();
+    let sinks = match settings.occlusion {
+        Occlusion::Sampled => Vec::new(),
+        Occlusion::Exact { .. } => sinks::of_scene(scene, &facets),
+    };
+    let planes: Vec<&Polygon> = facets.iter().copied().chain(sinks.iter().filter_map(Sink::opening)).collect();
+    let occluders = Tracer::occluders(&planes);
+    let patches = (0..bundles.elements().len()).filter_map(|e| bundles.patch(e));
+    let mut ends: Vec<End> = patches.map(|patch| End::new(&patch.polygon, patch.facet)).collect();
+    let n = ends.len();
+    ends.extend(sinks.iter().map(|sink| End::new(&sink.polygon, sink.plane)));
     let etendue = bundles.etendue();
     let ladder = Ladder::new();
-    let nodes: Vec<Nodes> = patches.par_iter().map(|patch| ladder.nodes(&patch.polygon)).collect();
-    let clusters = Clusters::new(&patches, &polygons, &occluders);
+    let nodes: Vec<Nodes> = ends.par_iter().map(|end| ladder.nodes(end.polygon)).collect();
+    let clusters = Clusters::new(&ends, n, &planes, &occluders);
 
     // Visit the upper triangle row by row; long rows first, so that threads finish together.
-    let n = patches.len();
+    let parts =
+        Parts { ends: &ends, n_sources: n, ladder: &ladder, nodes: &nodes, clusters: &clusters, occluders: &occluders };
     let done = AtomicUsize::new(0);
-    let rows: Vec<(Vec<Entry>, Tally)> = (0..n)
+    let rows: Vec<Row> = (0..n)
         .into_par_iter()
         .with_max_len(1)
         .map(|i| {
-            let row = upper_row(&patches, &clusters, (&ladder, &nodes), etendue, &occluders, settings, i);
+            let row = parts.upper_row(i, settings);
             let finished = done.fetch_add(n - i, Ordering::Relaxed) + (n - i);
             progress(0.95 * finished as f64 / (0.5 * (n * (n + 1)) as f64));
             row
         })
         .collect();
 
-    // Count what every patch loses.
-    let lost: Vec<sinks::Lost> = patches
-        .par_iter()
-        .enumerate()
-        .map(|(i, patch)| {
-            let end = End { polygon: &patch.polygon, facet: patch.facet, etendue: etendue[i] };
-            sinks::lost_from(scene, &everything, end, settings.sink_rays, mix(&[settings.seed, 1, i as u64]))
-        })
-        .collect();
-    let mut sinks =
-        Block::from_fn(n, 2, |i, sink| etendue[i] * if sink == 0 { lost[i].escaped } else { lost[i].darkened });
+    // Add up what every patch loses, or count it by rays.
+    let lost: Vec<Lost> = match settings.occlusion {
+        Occlusion::Exact { .. } => {
+            rows.par_iter().enumerate().map(|(i, row)| sinks::lost_to(&sinks, &facets, ends[i], &row.lost)).collect()
+        }
+        Occlusion::Sampled => {
+            let everything = Tracer::new(&facets);
+            let rays = |i| {
+                sinks::lost_by_rays(scene, &everything, ends[i], settings.sink_rays, mix(&[settings.seed, 1, i as u64]))
+            };
+            (0..n).into_par_iter().map(rays).collect()
+        }
+    };
+    let mut sinks = Block::from_fn(n, 2, |i, sink| if sink == 0 { lost[i].escaped } else { lost[i].darkened });
 
     // Join the rows, each pair's variance counted at both of its ends.
-    let mut report = ExchangeReport::default();
-    let mut variance: Vec<f64> = lost.iter().zip(etendue).map(|(lost, mu)| lost.variance * mu * mu).collect();
-    for (i, (row, tally)) in rows.iter().enumerate() {
-        report.n_pairs += tally.n_pairs;
-        report.n_clear += tally.n_clear;
-        report.n_hidden += tally.n_hidden;
-        report.n_integrated += tally.n_integrated;
-        report.quadrature_error = report.quadrature_error.max(tally.quadrature_error);
-        for entry in row {
+    let mut total = Tally::default();
+    let mut variance: Vec<f64> = lost.iter().map(|lost| lost.variance).collect();
+    for (i, Row { entries, tally, .. }) in rows.iter().enumerate() {
+        total.add(*tally);
+        for entry in entries {
             variance[i] += entry.variance;
             variance[entry.column as usize] += entry.variance;
         }
     }
     let census = clusters.census;
-    report.n_by_clusters = census.n_averted + census.n_hidden + census.n_clear;
-    report.n_pairs += census.n_hidden;
-    report.n_hidden += census.n_hidden;
-    report.n_sampled = report.n_pairs - report.n_clear - report.n_hidden - report.n_integrated;
+    let mut report = ExchangeReport {
+        n_by_clusters: census.n_averted + census.n_hidden + census.n_clear,
+        n_pairs: total.n_pairs + census.n_hidden,
+        n_clear: total.n_clear,
+        n_hidden: total.n_hidden + census.n_hidden,
+        n_integrated: total.n_integrated,
+        n_sampled: total.n_pairs - total.n_clear - total.n_hidden - total.n_integrated,
+        quadrature_error: total.quadrature_error,
+        ..ExchangeReport::default()
+    };
     let relative: f64 = variance.iter().zip(etendue).map(|(v, mu)| v / (mu * mu)).sum();
     report.visibility_error = (relative / n.max(1) as f64).sqrt();
     let upper: Vec<Vec<(u32, f64)>> = rows
         .into_iter()
-        .map(|(row, _)| {
-            row.into_iter().filter(|entry| entry.value > 0.0).map(|entry| (entry.column, entry.value)).collect()
+        .map(|row| {
+            row.entries.into_iter().filter(|entry| entry.value > 0.0).map(|entry| (entry.column, entry.value)).collect()
         })
         .collect();
     let mut exchange = Matrix::symmetric(&upper);
@@ -214,53 +229,77 @@ pub(super) fn compute(
     Ok(Assembled { exchange, sinks, repair_scale, report })
 }
 
-/// The pairs (i, j), j > i, that exchange anything.
-fn upper_row(
-    patches: &[&Patch],
-    clusters: &Clusters,
-    (ladder, nodes): (&Ladder, &[Nodes]),
-    etendue: &[f64],
-    occluders: &Tracer,
-    settings: Exchange,
-    i: usize,
-) -> (Vec<Entry>, Tally) {
-    let mut tally = Tally::default();
-    let mut row = Vec::new();
-    let a = patches[i];
-    clusters.for_each_partner(i, |j, view| {
-        let b = patches[j];
-        let pair = quadrature::unoccluded(ladder, (&a.polygon, &nodes[i]), (&b.polygon, &nodes[j]), settings.tolerance);
-        let Some((exchange, error)) = pair else { return };
-        tally.n_pairs += 1;
-        tally.quadrature_error = tally.quadrature_error.max(error / exchange);
-        let View::Open(candidates) = view else {
-            tally.n_clear += 1;
-            row.push(Entry { column: j as u32, value: exchange, variance: 0.0 });
-            return;
-        };
+/// One row of the upper triangle, and what its patch loses to sinks.
+struct Row {
+    entries: Vec<Entry>,
+    /// By sink, `column` its number.
+    lost: Vec<Entry>,
+    tally: Tally,
+}
 
-        let key = mix(&[settings.seed, 0, i as u64, j as u64]);
-        let ends =
-            [(a, i), (b, j)].map(|(patch, k)| End { polygon: &patch.polygon, facet: patch.facet, etendue: etendue[k] });
-        match visibility::between(occluders, candidates, ends, settings.occlusion, settings.visibility_rays, key) {
-            Visibility::Full => {
-                tally.n_clear += 1;
-                row.push(Entry { column: j as u32, value: exchange, variance: 0.0 });
-            }
-            Visibility::None => tally.n_hidden += 1,
-            Visibility::Integrated { blocked, error } => {
-                tally.n_integrated += 1;
-                let value = (exchange - blocked).max(0.0);
-                if value > 0.0 {
-                    row.push(Entry { column: j as u32, value, variance: error * error });
+/// What rows are computed from.
+struct Parts<'a> {
+    /// Patches, then sinks.
+    ends: &'a [End<'a>],
+    n_sources: usize,
+    ladder: &'a Ladder,
+    nodes: &'a [Nodes],
+    clusters: &'a Clusters,
+    occluders: &'a Tracer,
+}
+
+impl Parts<'_> {
+    /// The pairs (i, j), j > i, that exchange anything.
+    fn upper_row(&self, i: usize, settings: Exchange) -> Row {
+        let mut row = Row { entries: Vec::new(), lost: Vec::new(), tally: Tally::default() };
+        self.clusters.for_each_partner(i, |j, view| {
+            let [a, b] = [i, j].map(|k| (self.ends[k].polygon, &self.nodes[k]));
+            let Some((exchange, error)) = quadrature::unoccluded(self.ladder, a, b, settings.tolerance) else { return };
+            let mut tally = Tally { n_pairs: 1, quadrature_error: error / exchange, ..Tally::default() };
+            let (value, variance) = match self.visible(i, j, view, settings) {
+                Visibility::Full => {
+                    tally.n_clear = 1;
+                    (exchange, 0.0)
                 }
+                Visibility::None => {
+                    tally.n_hidden = 1;
+                    (0.0, 0.0)
+                }
+                Visibility::Integrated { blocked, error } => {
+                    tally.n_integrated = 1;
+                    ((exchange - blocked).max(0.0), error * error)
+                }
+                Visibility::Sampled { share, variance } => (share * exchange, variance * exchange * exchange),
+            };
+            let (list, first) = if j < self.n_sources {
+                row.tally.add(tally);
+                (&mut row.entries, 0)
+            } else {
+                (&mut row.lost, self.n_sources)
+            };
+            if value > 0.0 {
+                list.push(Entry { column: (j - first) as u32, value, variance });
             }
-            Visibility::Sampled { share, variance } => {
-                let variance = variance * exchange * exchange;
-                row.push(Entry { column: j as u32, value: share * exchange, variance });
-            }
-        }
-    });
-    row.sort_unstable_by_key(|entry| entry.column);
-    (row, tally)
+        });
+        row.entries.sort_unstable_by_key(|entry| entry.column);
+        row.lost.sort_unstable_by_key(|entry| entry.column);
+        row
+    }
+
+    fn visible(&self, i: usize, j: usize, view: &View, settings: Exchange) -> Visibility {
+        let View::Open(candidates) = view else { return Visibility::Full };
+        let key = mix(&[settings.seed, 0, i as u64, j as u64]);
+        let ends = [self.ends[i], self.ends[j]];
+        visibility::between(self.occluders, candidates, ends, settings.occlusion, settings.visibility_rays, key)
+    }
+}
+
+impl Tally {
+    fn add(&mut self, other: Self) {
+        self.n_pairs += other.n_pairs;
+        self.n_clear += other.n_clear;
+        self.n_hidden += other.n_hidden;
+        self.n_integrated += other.n_integrated;
+        self.quadrature_error = self.quadrature_error.max(other.quadrature_error);
+    }
 }

@@ -139,13 +139,11 @@ fn least_squares(exchange: &mut Matrix, sinks: &mut Block, etendue: &[f64]) -> u
     let of_row = row_sums(&weight);
     let diagonal: Vec<f64> = (0..n).map(|i| of_row.get(i, 0) + sinks.row(i).map(|s| s * s).sum::<f64>()).collect();
     let flow = row_sums(exchange);
-    let mut residual: Vec<f64> =
-        (0..n).map(|i| etendue[i] - flow.get(i, 0) - sinks.row(i).sum::<f64>()).collect();
+    let mut residual: Vec<f64> = (0..n).map(|i| etendue[i] - flow.get(i, 0) - sinks.row(i).sum::<f64>()).collect();
 
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let precondition = |r: &[f64]| -> Vec<f64> {
-        r.iter().zip(&diagonal).map(|(r, d)| if *d > 0.0 { r / d } else { 0.0 }).collect()
-    };
+    let precondition =
+        |r: &[f64]| -> Vec<f64> { r.iter().zip(&diagonal).map(|(r, d)| if *d > 0.0 { r / d } else { 0.0 }).collect() };
     let mut multiplier = vec![0.0; n];
     let mut step = Block::zeros(n, 1);
     let mut image = Block::zeros(n, 1);

@@ -1,24 +1,68 @@
 //! What leaves a patch and never comes back: into the environment of an open scene, or onto the black back of a surface.
+//!
+//! Either as exchange with openings and backs, like that of any two patches; or counted by rays.
 
+use super::Entry;
+use super::openings::openings;
 use super::visibility::End;
-use crate::geometry::{Frame, Ray, Tracer, Vec3};
+use crate::geometry::{Frame, Polygon, Ray, Tracer, Vec3, height};
 use crate::sampling::{Kronecker, mix};
 use crate::scene::{Scene, Side};
 use std::f64::consts::TAU;
 
-/// Shares of a patch's étendue.
+/// Étendue of a patch, m² sr.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lost {
-    /// Share that leaves the scene.
+    /// What leaves the scene.
     pub escaped: f64,
-    /// Share that ends on black backs.
+    /// What ends on black backs.
     pub darkened: f64,
-    /// Variance of their sum, binomial: an upper bound for points spread evenly.
+    /// Variance of their sum.
     pub variance: f64,
 }
 
-/// Follows `n_rays` rays uniform in étendue from the patch to where they first meet something.
-pub fn lost_from(scene: &Scene, tracer: &Tracer, patch: End, n_rays: usize, key: u64) -> Lost {
+/// A polygon that keeps all it receives.
+pub struct Sink {
+    pub polygon: Polygon,
+    /// Number of the facet whose back it is, or the number after all facets for openings, one each.
+    pub plane: usize,
+    is_opening: bool,
+}
+
+impl Sink {
+    /// The polygon, where it is an opening.
+    pub fn opening(&self) -> Option<&Polygon> {
+        self.is_opening.then_some(&self.polygon)
+    }
+}
+
+/// The openings of a scene and its black backs.
+pub fn of_scene(scene: &Scene, facets: &[&Polygon]) -> Vec<Sink> {
+    let backs = (0..facets.len()).filter(|facet| scene.surface_of(*facet).brdf(Side::Back).is_none());
+    let backs = backs.map(|facet| Sink { polygon: facets[facet].flipped(), plane: facet, is_opening: false });
+    let openings = openings(facets).into_iter().enumerate();
+    let openings = openings.map(|(k, polygon)| Sink { polygon, plane: facets.len() + k, is_opening: true });
+    backs.chain(openings).collect()
+}
+
+/// Adds up the exchange of a patch with sinks. What has nothing in front of it loses all.
+pub fn lost_to(sinks: &[Sink], facets: &[&Polygon], patch: End, lost: &[Entry]) -> Lost {
+    let (normal, centroid) = (patch.polygon.normal(), patch.polygon.centroid());
+    if lost.is_empty() && facets.iter().flat_map(|f| f.vertices()).all(|v| height(normal, centroid, *v) <= 0.0) {
+        return Lost { escaped: patch.etendue, ..Lost::default() };
+    }
+    let mut sum = Lost::default();
+    for entry in lost {
+        let share = if sinks[entry.column as usize].is_opening { &mut sum.escaped } else { &mut sum.darkened };
+        *share += entry.value;
+        sum.variance += entry.variance;
+    }
+    sum
+}
+
+/// Follows `n_rays` rays uniform in étendue from the patch to where they first meet something. The variance is binomial: an upper bound
+/// for points spread evenly.
+pub fn lost_by_rays(scene: &Scene, tracer: &Tracer, patch: End, n_rays: usize, key: u64) -> Lost {
     let frame = Frame::about(patch.polygon.normal());
     let points = Kronecker::<4>::new(mix(&[key]));
     let (mut escaped, mut darkened) = (0usize, 0usize);
@@ -35,6 +79,11 @@ pub fn lost_from(scene: &Scene, tracer: &Tracer, patch: End, n_rays: usize, key:
         }
     }
     let n = n_rays as f64;
-    let lost = (escaped + darkened) as f64 / n;
-    Lost { escaped: escaped as f64 / n, darkened: darkened as f64 / n, variance: lost * (1.0 - lost) / n }
+    let share = (escaped + darkened) as f64 / n;
+    let weight = patch.etendue / n;
+    Lost {
+        escaped: weight * escaped as f64,
+        darkened: weight * darkened as f64,
+        variance: share * (1.0 - share) * patch.etendue * weight,
+    }
 }

@@ -4,6 +4,7 @@ use super::Occlusion;
 use super::shadow;
 use crate::geometry::{Polygon, Shaft, Tracer, Vec3};
 use crate::sampling::{Kronecker, mix};
+use std::f64::consts::PI;
 
 /// The visible share of a pair's exchange.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,13 +19,20 @@ pub enum Visibility {
     Integrated { blocked: f64, error: f64 },
 }
 
-/// A patch and the number of the facet it was cut from.
+/// What light can leave or end on: a piece of a facet.
 #[derive(Clone, Copy)]
 pub struct End<'a> {
     pub polygon: &'a Polygon,
+    /// Number of the facet.
     pub facet: usize,
     /// Its étendue, m² sr.
     pub etendue: f64,
+}
+
+impl<'a> End<'a> {
+    pub fn new(polygon: &'a Polygon, facet: usize) -> Self {
+        Self { polygon, facet, etendue: PI * polygon.area() }
+    }
 }
 
 /// Classifies the pair, and where that does not settle it integrates what is blocked, or casts `n_rays` between points spread
@@ -40,7 +48,7 @@ pub fn between(
     n_rays: usize,
     key: u64,
 ) -> Visibility {
-    let handles = match Shaft::among(occluders, Some(candidates), (a.polygon, a.facet), (b.polygon, b.facet)) {
+    let handles = match Shaft::among(occluders, candidates, (a.polygon, a.facet), (b.polygon, b.facet)) {
         Shaft::Clear => return Visibility::Full,
         Shaft::Blocked => return Visibility::None,
         Shaft::Undecided(handles) => handles,
