@@ -13,6 +13,7 @@ use thiserror::Error;
 #[derive(Clone, Debug)]
 pub struct System {
     exchange: Arc<Matrix>,
+    exchange_error: Arc<Matrix>,
     etendue: Arc<[f64]>,
     sinks: Block,
     emission: Block,
@@ -73,7 +74,7 @@ pub fn assemble_watched(
     }
 
     let computed = exchange::compute(scene, bundles, settings, progress);
-    let exchange::Assembled { exchange, sinks, repair_scale, report } =
+    let exchange::Assembled { exchange, error, sinks, repair_scale, report } =
         computed.map_err(|exchange::Overfull { bundle, fullness }| {
             let patch = bundles.patch(bundles.element_of(bundle).0);
             let (surface, position) = patch.map_or((String::new(), [f64::NAN; 3]), |patch| {
@@ -82,6 +83,7 @@ pub fn assemble_watched(
             AssemblyError::Overlap { surface, position, fullness }
         })?;
     let exchange = Arc::new(exchange);
+    let exchange_error = Arc::new(error);
     let etendue: Arc<[f64]> = bundles.etendue().into();
     let root = Block::from_fn(n, n_bands, |i, band| albedo.get(i, band).sqrt());
     let propagation = Propagation::new(exchange.clone(), etendue.clone());
@@ -89,6 +91,7 @@ pub fn assemble_watched(
     let scattering_root = Diagonal::new(root);
     Ok(System {
         exchange,
+        exchange_error,
         etendue,
         sinks,
         emission,
@@ -101,11 +104,11 @@ pub fn assemble_watched(
 }
 
 impl System {
-    /// Bytes that assembly may take for n bundles, none of them hidden from another: T in full, the list of its upper triangle at 24 an
-    /// entry and a third more for growing it, and the points of the quadrature, some 6000 a patch.
+    /// Bytes that assembly may take for n bundles, none of them hidden from another: T and its errors in full, the list of the upper
+    /// triangle at 24 an entry and a third more for growing it, and the points of the quadrature, some 6000 a patch.
     pub fn memory_estimate(n_bundles: usize) -> u64 {
         let n = n_bundles as u64;
-        n.saturating_mul(n).saturating_mul(8 + 12 + 4).saturating_add(n.saturating_mul(8192))
+        n.saturating_mul(n).saturating_mul(8 + 8 + 12 + 4).saturating_add(n.saturating_mul(8192))
     }
 
     pub fn n_bundles(&self) -> usize {
@@ -119,6 +122,12 @@ impl System {
     /// T, m² sr.
     pub fn exchange(&self) -> &Matrix {
         &self.exchange
+    }
+
+    /// Absolute error of every Tᵢⱼ before repair, m² sr: the estimate where a partly visible pair was integrated, a standard error
+    /// where it was sampled, zero where nothing stands between (see [`ExchangeReport::quadrature_error`] for those).
+    pub fn exchange_error(&self) -> &Matrix {
+        &self.exchange_error
     }
 
     /// μ, m² sr.

@@ -61,10 +61,13 @@ struct ExchangeRecord {
     n_pairs: usize,
     n_clear: usize,
     n_hidden: usize,
+    n_integrated: usize,
     n_sampled: usize,
+    /// Pairs, facing each other or not, that whole clusters settled.
+    n_by_clusters: usize,
     /// Relative to the pair's T, the worst pair.
     quadrature_error: f64,
-    /// Standard error of a row sum relative to μ, root mean square over bundles.
+    /// Error that partly visible pairs leave in a row sum, relative to μ, root mean square over bundles.
     visibility_error: f64,
     closure_before_repair: f64,
     /// Largest change of a row's scale by the repair.
@@ -116,7 +119,9 @@ pub fn record<'a>(
             n_pairs: exchange.n_pairs,
             n_clear: exchange.n_clear,
             n_hidden: exchange.n_hidden,
+            n_integrated: exchange.n_integrated,
             n_sampled: exchange.n_sampled,
+            n_by_clusters: exchange.n_by_clusters,
             quadrature_error: exchange.quadrature_error,
             visibility_error: exchange.visibility_error,
             closure_before_repair: exchange.closure_before_repair,

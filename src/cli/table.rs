@@ -63,12 +63,13 @@ pub fn table(scene: &Scene, bundles: &Bundles, system: &System, solution: &Solut
     ));
     let exchange = system.report();
     lines.push(format!(
-        "exchange before repair: closure {}, visibility {}, quadrature {} ({} of {} pairs sampled)",
+        "exchange before repair: closure {}, visibility {}, quadrature {} ({} of {} pairs integrated, {} sampled)",
         short(exchange.closure_before_repair),
         short(exchange.visibility_error),
         short(exchange.quadrature_error),
-        exchange.n_sampled,
-        exchange.n_pairs
+        exchange.n_integrated,
+        exchange.n_pairs,
+        exchange.n_sampled
     ));
     lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
 }

@@ -5,14 +5,15 @@ mod memory;
 mod outcome;
 mod provenance;
 mod refinement;
+mod repairs;
 mod run;
 mod watch;
 
 pub use error::StudyError;
 pub use memory::memory_estimate;
 pub use outcome::{
-    EstimatorRun, ExchangeSummary, HistoryPoint, LawsMeasured, Pictures, Refinement, RefinementLevel, SamplePoint,
-    SolverRun, StudyOutcome, SurfaceMean, Truncation,
+    EstimatorRun, ExchangeSummary, HistoryPoint, LawsMeasured, Pictures, Refinement, RefinementLevel, RepairRun,
+    SamplePoint, SolverRun, StudyOutcome, SurfaceMean, Truncation,
 };
 pub use provenance::Provenance;
 pub use refinement::surface_means;

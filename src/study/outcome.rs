@@ -17,6 +17,8 @@ pub struct StudyOutcome {
     pub tessellations: Vec<String>,
     pub exchange: ExchangeSummary,
     pub laws: LawsMeasured,
+    /// Every way of closing T, the one in use first.
+    pub repairs: Vec<RepairRun>,
     /// Name of the solver whose answer is the discrete truth below.
     pub reference_solver: String,
     pub solvers: Vec<SolverRun>,
@@ -33,17 +35,21 @@ pub struct StudyOutcome {
 /// How the exchange T came about, and how good it was before its repair.
 #[derive(Clone, Debug, Serialize)]
 pub struct ExchangeSummary {
+    /// Pairs of patches, facing each other or not, that whole clusters settled at once.
+    pub n_by_clusters: usize,
     /// Pairs of patches facing each other.
     pub n_pairs: usize,
     /// Of these: computed by quadrature alone, no ray needed.
     pub n_unoccluded: usize,
+    /// Of these: what is blocked integrated exactly.
+    pub n_integrated: usize,
     /// Of these: visibility sampled by rays.
     pub n_sampled: usize,
     /// Of these: proved hidden.
     pub n_hidden: usize,
     /// Worst quadrature error estimate over all pairs, relative to the pair's T.
     pub quadrature_error: f64,
-    /// Root mean square over bundles of the standard error of a row sum, relative to μ: the visibility noise.
+    /// Root mean square over bundles of the error of a row sum that partly visible pairs leave, relative to μ.
     pub visibility_error: f64,
     /// max |Σⱼ Tᵢⱼ + sinksᵢ − μᵢ| / μᵢ before the symmetric repair.
     pub closure_before_repair: f64,
@@ -62,6 +68,19 @@ pub struct LawsMeasured {
     pub closure: f64,
     pub positivity: f64,
     pub conservation: f64,
+}
+
+/// One way of closing T, and what it does to the laws and to the answer.
+#[derive(Clone, Debug, Serialize)]
+pub struct RepairRun {
+    pub method: String,
+    /// Sweeps over T, or steps of conjugate gradients.
+    pub sweeps: usize,
+    pub laws: LawsMeasured,
+    /// max |L − Lraw| / max |L|; NaN where the unrepaired matrix creates light.
+    pub change: f64,
+    /// max |L − Lused| / max |L|, from the answer of the repair in use.
+    pub from_reference: f64,
 }
 
 /// One deterministic method.

@@ -2,6 +2,7 @@
 
 use super::outcome::*;
 use super::refinement::{self, LevelSolution};
+use super::repairs;
 use super::watch::Watch;
 use super::{Provenance, StudyError};
 use crate::assembly::{Exchange, Gather, Measurement, System, assemble_watched};
@@ -60,6 +61,7 @@ pub fn run(
     // Solve it by every method.
     let methods = solver::all(settings.tolerance);
     let (reference_solver, truth, solvers) = stages.time("solve", |progress| solve_all(&methods, &system, progress))?;
+    let repairs = stages.time("repairs", |progress| repairs::compare(&system, settings.tolerance, &truth, progress));
     let truncation = stages.time("truncate", |_| truncate(&system, &truth, 60));
 
     // Estimate it by every estimator, walks against the matrix and paths against the scene.
@@ -116,13 +118,9 @@ pub fn run(
         n_bundles: bundles.n_bundles(),
         bands: scene.bands().to_vec(),
         tessellations: tessellations(scene),
-        exchange: summarise(&system, settings, &truth),
-        laws: LawsMeasured {
-            reciprocity: laws.reciprocity,
-            closure: laws.closure,
-            positivity: laws.positivity,
-            conservation: laws.conservation,
-        },
+        exchange: summarise(&system, &repairs),
+        laws: laws.into(),
+        repairs,
         reference_solver,
         solvers,
         truncation,
@@ -326,22 +324,21 @@ fn picture(
 }
 
 /// What the report says of T, the change that its repair made in L included.
-fn summarise(system: &System, settings: &StudySettings, truth: &Block) -> ExchangeSummary {
+fn summarise(system: &System, repairs: &[RepairRun]) -> ExchangeSummary {
     let report = system.report();
-    let unrepaired = system.without_repair();
-    // The unrepaired matrix may create light and then has no steady state: that ends no study.
-    let unrepaired = solver::Cg { tolerance: settings.tolerance }.solve(unrepaired.equation(), &mut ());
     let all: f64 = system.etendue().iter().sum();
     ExchangeSummary {
         n_pairs: report.n_pairs,
         n_unoccluded: report.n_clear,
+        n_by_clusters: report.n_by_clusters,
+        n_integrated: report.n_integrated,
         n_sampled: report.n_sampled,
         n_hidden: report.n_hidden,
         quadrature_error: report.quadrature_error,
         visibility_error: report.visibility_error,
         closure_before_repair: report.closure_before_repair,
         repair_sweeps: report.repair.map_or(0, |repair| repair.sweeps),
-        repair_change: unrepaired.map_or(f64::NAN, |solution| relative_max(&solution.radiance, truth)),
+        repair_change: report.repair.and(repairs.first()).map_or(0.0, |used| used.change),
         escaped: system.sinks().column(0).iter().sum::<f64>() / all,
     }
 }

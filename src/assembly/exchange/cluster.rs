@@ -237,3 +237,85 @@ fn longer_axis(polygon: &Polygon) -> Vec3 {
     // A tie goes to the edge, not to rounding.
     if extent(across) > (1.0 + 1e-9) * extent(along) { across } else { along }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::basis::{Bundles, Resolution};
+    use crate::gallery;
+    use crate::geometry::Mat3;
+    use crate::sampling::Kronecker;
+
+    /// What clusters say of a pair: nothing of it was linked, it is clear, or it is open.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    enum Said {
+        Nothing,
+        Clear,
+        Open,
+    }
+
+    /// Rays hunt for a clear pair with a hidden part, and for an unlinked one that sees something.
+    #[test]
+    fn no_ray_contradicts_a_cluster() {
+        for (name, patch_size) in
+            [("corner-box", 0.25), ("two-rooms", 0.7), ("cornell-box", 0.4), ("spherical-crater", 10.0)]
+        {
+            let scene = (gallery::find(name).expect("a scene of the gallery").build)();
+            let bundles = Bundles::new(&scene, Resolution { patch_size, n_directions: 1 }).expect("a resolution");
+            for turn in [Mat3::IDENTITY, Mat3::from_rotation_x(0.3) * Mat3::from_rotation_z(1.1)] {
+                let turned =
+                    |p: &Polygon| Polygon::new(p.vertices().iter().map(|v| turn * *v).collect()).expect("turned");
+                let facets: Vec<Polygon> = (0..scene.facets().len()).map(|f| turned(scene.polygon(f))).collect();
+                let facets: Vec<&Polygon> = facets.iter().collect();
+                let patches: Vec<_> = (0..bundles.elements().len()).filter_map(|e| bundles.patch(e)).collect();
+                let polygons: Vec<Polygon> = patches.iter().map(|p| turned(&p.polygon)).collect();
+                let ends: Vec<End> = polygons.iter().zip(&patches).map(|(p, patch)| End::new(p, patch.facet)).collect();
+                let occluders = Tracer::occluders(&facets);
+                let clusters = Clusters::new(&ends, ends.len(), &facets, &occluders);
+                check(name, &clusters, &ends, &occluders);
+            }
+        }
+    }
+
+    fn check(name: &str, clusters: &Clusters, ends: &[End], occluders: &Tracer) {
+        let n = ends.len();
+        let points = Kronecker::<4>::new(0x636c_7573);
+        let mut n_settled = 0;
+        for i in 0..n {
+            let mut said = vec![Said::Nothing; n];
+            clusters.for_each_partner(i, |j, view| {
+                assert_eq!(said[j], Said::Nothing, "{name}: {i} and {j} are linked twice");
+                said[j] = if matches!(view, View::Open(_)) { Said::Open } else { Said::Clear };
+                if *view == (View::Clear { is_facing: true }) {
+                    let [a, b] = [ends[i].polygon, ends[j].polygon];
+                    let sides = (in_front_of(a.vertices(), b), in_front_of(b.vertices(), a));
+                    assert_eq!(sides, (Half::InFront, Half::InFront), "{name}: {i} and {j}");
+                }
+            });
+            for j in i + 1..n {
+                n_settled += usize::from(said[j] != Said::Open);
+                for k in 0..6 {
+                    let [u0, u1, u2, u3] = points.point(6 * (n * i + j) + k);
+                    let (x, y) = (ends[i].polygon.sample([u0, u1]), ends[j].polygon.sample([u2, u3]));
+                    let d = (y - x).normalize_or_zero();
+                    // Grazing rays are left to rounding.
+                    let is_facing = d.dot(ends[i].polygon.normal()) > 1e-9 && d.dot(ends[j].polygon.normal()) < -1e-9;
+                    let sees = is_facing && !occluders.occluded(x, y, [ends[i].facet, ends[j].facet]);
+                    match said[j] {
+                        Said::Nothing => assert!(!sees, "{name}: {i} sees {j} unlinked"),
+                        Said::Clear => assert!(sees || !is_facing, "{name}: {i} and {j} are not clear"),
+                        Said::Open => {}
+                    }
+                }
+            }
+        }
+        let census = clusters.census;
+        assert_eq!(census.n_averted + census.n_hidden + census.n_clear, n_settled - same_side_pairs(ends), "{name}");
+    }
+
+    /// Pairs within one side of a facet are nobody's.
+    fn same_side_pairs(ends: &[End]) -> usize {
+        let is_same_side = |a: &End, b: &End| a.facet == b.facet && a.polygon.normal().dot(b.polygon.normal()) > 0.0;
+        ends.chunk_by(is_same_side).map(|group| group.len() * (group.len() - 1) / 2).sum()
+    }
+}

@@ -100,6 +100,8 @@ pub struct ExchangeReport {
 /// T with its sinks, after repair.
 pub(super) struct Assembled {
     pub exchange: Matrix,
+    /// Absolute errors of T, see [`System::exchange_error`](super::System::exchange_error).
+    pub error: Matrix,
     /// n × 2: étendue that escapes, étendue that ends on black backs.
     pub sinks: Block,
     /// The diagonal of D in D T D; empty without repair.
@@ -207,12 +209,13 @@ pub(super) fn compute(
     };
     let relative: f64 = variance.iter().zip(etendue).map(|(v, mu)| v / (mu * mu)).sum();
     report.visibility_error = (relative / n.max(1) as f64).sqrt();
-    let upper: Vec<Vec<(u32, f64)>> = rows
-        .into_iter()
-        .map(|row| {
-            row.entries.into_iter().filter(|entry| entry.value > 0.0).map(|entry| (entry.column, entry.value)).collect()
-        })
-        .collect();
+    let upper = |value: fn(&Entry) -> f64| -> Vec<Vec<(u32, f64)>> {
+        let pick = |entry: &Entry| Some((entry.column, value(entry))).filter(|(_, value)| *value > 0.0);
+        rows.iter().map(|row| row.entries.iter().filter_map(pick).collect()).collect()
+    };
+    let error = Matrix::symmetric(&upper(|entry| entry.variance.sqrt()));
+    let upper = upper(|entry| entry.value);
+    drop(rows);
     let mut exchange = Matrix::symmetric(&upper);
     drop(upper);
 
@@ -226,7 +229,7 @@ pub(super) fn compute(
         (report.repair, repair_scale) = (Some(repair), scale);
     }
     progress(1.0);
-    Ok(Assembled { exchange, sinks, repair_scale, report })
+    Ok(Assembled { exchange, error, sinks, repair_scale, report })
 }
 
 /// One row of the upper triangle, and what its patch loses to sinks.

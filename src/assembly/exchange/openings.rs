@@ -90,9 +90,9 @@ mod tests {
             for name in ["furnace-cube", "furnace-sphere", "two-rooms"] {
                 assert_eq!(of(name, turn, 0), 0.0, "{name}");
             }
-            // A cube of 1 without one face, and the four sides between two unit squares 1 apart. Corners are rounded to some ulp.
+            // A cube of 1 without one face, and the four sides between two unit squares ½ apart. Corners are rounded to some ulp.
             assert!((of("furnace-cube", turn, 1) - 1.0).abs() < 1e-12);
-            assert!((of("parallel-plates", turn, 0) - 4.0).abs() < 1e-12);
+            assert!((of("parallel-plates", turn, 0) - 2.0).abs() < 1e-12);
         }
     }
 }

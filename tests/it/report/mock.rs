@@ -3,7 +3,7 @@
 use etendue::image::Image;
 use etendue::study::{
     EstimatorRun, ExchangeSummary, HistoryPoint, LawsMeasured, Pictures, Provenance, Refinement, RefinementLevel,
-    SamplePoint, SolverRun, StudyOutcome, SurfaceMean, Truncation,
+    RepairRun, SamplePoint, SolverRun, StudyOutcome, SurfaceMean, Truncation,
 };
 use std::collections::BTreeMap;
 
@@ -133,8 +133,10 @@ pub fn cornell() -> StudyOutcome {
         bands: ["red", "green", "blue"].map(String::from).to_vec(),
         tessellations: Vec::new(),
         exchange: ExchangeSummary {
+            n_by_clusters: 2_204_113,
             n_pairs: 1_583_220,
             n_unoccluded: 1_214_017,
+            n_integrated: 0,
             n_sampled: 288_940,
             n_hidden: 80_263,
             quadrature_error: 3.4e-7,
@@ -145,6 +147,19 @@ pub fn cornell() -> StudyOutcome {
             escaped: 0.1312,
         },
         laws: LawsMeasured { reciprocity: 0.0, closure: 4.4e-16, positivity: 0.0, conservation: 2.2e-16 },
+        repairs: [
+            ("symmetric scaling", 9, 0.0, 0.0),
+            ("alternating", 41, 2.2e-16, 1.3e-6),
+            ("row scaling", 1, 7.4e-3, 5.1e-5),
+        ]
+        .map(|(method, sweeps, reciprocity, from_reference)| RepairRun {
+            method: method.into(),
+            sweeps,
+            laws: LawsMeasured { reciprocity, closure: 4.4e-16, positivity: 0.0, conservation: 2.2e-16 },
+            change: 8.1e-4,
+            from_reference,
+        })
+        .to_vec(),
         reference_solver: "LU (faer)".into(),
         solvers: vec![
             direct("LU (faer)", 0.61, 0.0),
