@@ -193,7 +193,7 @@ fn outside_crates_come_in_through_their_doors() {
 
 #[test]
 fn every_dependency_has_a_door_or_is_for_all() {
-    let everywhere = ["rayon", "serde", "serde_json", "thiserror"];
+    let everywhere = ["pulp", "rayon", "serde", "serde_json", "thiserror"];
     let manifest = include_str!("../Cargo.toml");
     let dependencies =
         manifest.split("[dependencies]").nth(1).and_then(|rest| rest.split("\n[").next()).expect("dependencies");

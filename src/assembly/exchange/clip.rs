@@ -1,5 +1,7 @@
 //! The part of a polygon in front of a plane.
 
+use super::double::Double;
+use super::real::{Real, Vector};
 use crate::geometry::{Polygon, Vec3, height};
 
 /// How a polygon lies to a plane.
@@ -16,7 +18,7 @@ pub enum Half {
 /// Cuts `polygon` by the plane of `plane` (Sutherland and Hodgman 1974). Corners within the rounding of their coordinates lie on
 /// the plane.
 pub fn in_front_of(polygon: &[Vec3], plane: &Polygon) -> Half {
-    above(polygon, plane.centroid(), plane.normal())
+    above(polygon, plane.vertices()[0], plane.normal())
 }
 
 /// The same for the plane through a point with this unit normal.
@@ -40,6 +42,23 @@ pub fn above(polygon: &[Vec3], origin: Vec3, normal: Vec3) -> Half {
         }
     }
     Half::Part(part)
+}
+
+/// The part of a polygon above a plane, in double-double: its corners and their heights, zero where they lie on the plane. What is cut
+/// off is cut off to thirty digits, so that little left over is right to as many as the polygon.
+pub fn cut(corners: &[Vector<Double>], heights: &[Double]) -> Vec<Vector<Double>> {
+    let mut part = Vec::with_capacity(corners.len() + 1);
+    for k in 0..corners.len() {
+        let next = (k + 1) % corners.len();
+        let [here, there] = [heights[k], heights[next]];
+        if here.value() >= 0.0 {
+            part.push(corners[k]);
+        }
+        if here.value() * there.value() < 0.0 {
+            part.push(corners[k] + (corners[next] - corners[k]).scaled(here / (here - there)));
+        }
+    }
+    part
 }
 
 #[cfg(test)]

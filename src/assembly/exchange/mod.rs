@@ -3,17 +3,24 @@
 //! Every pair of patches is looked at once and deposited both ways. What a patch loses to the environment and to black backs is
 //! counted by rays of its own, so that closure, Σⱼ Tᵢⱼ + sinksᵢ = μᵢ, is a check and not a definition.
 
+mod apart;
 mod clip;
+mod close;
 mod closure;
 mod cluster;
 mod contour;
+mod double;
+mod ladder;
 mod lambert;
 mod openings;
 mod point;
+mod product;
 mod quadrature;
+mod real;
 mod repair;
 mod rules;
 mod shadow;
+mod shape;
 mod sinks;
 mod visibility;
 

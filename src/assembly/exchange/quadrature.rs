@@ -1,136 +1,124 @@
-//! Exchange of two unoccluded patches: product Gauss where they are apart, contours where they are not.
+//! Exchange of two unoccluded patches: product Gauss where they are apart, contours where they are not, and contours in double-double
+//! arithmetic where too much cancels in those.
 
-use super::clip::{Half, in_front_of};
-use super::contour;
-use super::rules::{Rule, gauss_legendre};
-use crate::geometry::{Polygon, Vec3};
+pub use super::ladder::{Ladder, Nodes};
 
-/// Gauss points an axis, tried in turn until two agree.
-const LADDER: [usize; 5] = [2, 3, 4, 6, 8];
+use super::apart::Apart;
+use super::clip::cut;
+use super::close::Close;
+use super::double::Double;
+use super::real::{Real, Vector};
+use super::shape::Shape;
+use crate::geometry::{Polygon, Vec3, height};
 
-/// Points of one patch, for every rung of the ladder.
-pub struct Nodes {
-    centre: Vec3,
-    radius: f64,
-    rungs: [Rung; LADDER.len()],
-}
-
-/// Points and area weights, one array a coordinate.
-#[derive(Default)]
-struct Rung {
-    x: Vec<f64>,
-    y: Vec<f64>,
-    z: Vec<f64>,
-    weight: Vec<f64>,
-}
-
-/// The Gauss rules of the ladder.
-pub struct Ladder([Rule; LADDER.len()]);
-
-impl Ladder {
-    pub fn new() -> Self {
-        Self(LADDER.map(gauss_legendre))
-    }
-
-    /// Lays the points of every rung onto a patch. Triangles are collapsed squares; larger polygons are fans of triangles.
-    pub fn nodes(&self, polygon: &Polygon) -> Nodes {
-        let v = polygon.vertices();
-        let corners: Vec<[Vec3; 4]> = match *v {
-            [a, b, c, d] => vec![[a, b, c, d]],
-            _ => v[1..].windows(2).map(|pair| [v[0], pair[0], pair[1], v[0]]).collect(),
-        };
-        let rungs = std::array::from_fn(|k| {
-            let mut rung = Rung::default();
-            for quad in &corners {
-                rung.extend(quad, polygon.normal(), &self.0[k]);
-            }
-            rung
-        });
-        let centre = polygon.centroid();
-        Nodes { centre, radius: v.iter().map(|p| p.distance(centre)).fold(0.0, f64::max), rungs }
-    }
-}
-
-impl Rung {
-    /// Adds the points of one bilinear quadrilateral, weighted by its Jacobian.
-    fn extend(&mut self, [a, b, c, d]: &[Vec3; 4], normal: Vec3, rule: &Rule) {
-        for (t, wt) in rule.nodes.iter().zip(&rule.weights) {
-            for (s, ws) in rule.nodes.iter().zip(&rule.weights) {
-                let point = (*a * (1.0 - s) + *b * *s) * (1.0 - t) + (*d * (1.0 - s) + *c * *s) * *t;
-                let along = (*b - *a) * (1.0 - t) + (*c - *d) * *t;
-                let across = (*d - *a) * (1.0 - s) + (*c - *b) * *s;
-                self.x.push(point.x);
-                self.y.push(point.y);
-                self.z.push(point.z);
-                self.weight.push(ws * wt * along.cross(across).dot(normal));
-            }
-        }
-    }
-}
+/// The longest product rule that is tried before contours: as dear as they are.
+const CHEAP: usize = 8;
+/// The longest that is tried before contours in double-double.
+const DEAR: usize = 16;
 
 /// T of two patches with nothing between them and an estimate of its error, m² sr; `None` where they do not face each other.
 ///
-/// T = ∫∫ cosθ cosθ' / r² dA dA'. The tolerance is reached relative to T, or the contour's own estimate is returned.
+/// T = ∫∫ cosθ cosθ' / r² dA dA'. The tolerance is reached relative to T, down to 1e-13 wherever T > 1e-12 of the étendue.
+/// Swapping the two changes no bit. Cost: 0.1 to 5 µs for patches that are apart, 2 to 20 µs for others, 50 to 500 µs for those in whose
+/// contour integrals more cancels than the tolerance allows.
 pub fn unoccluded(ladder: &Ladder, a: (&Polygon, &Nodes), b: (&Polygon, &Nodes), tolerance: f64) -> Option<(f64, f64)> {
-    // Keep of each what is in front of the other.
-    match (in_front_of(a.0.vertices(), b.0), in_front_of(b.0.vertices(), a.0)) {
-        (Half::Behind, _) | (_, Half::Behind) => None,
-        (Half::InFront, Half::InFront) => climb(a, b, tolerance).or_else(|| contour(a.0.vertices(), b.0.vertices())),
-        (of_a, of_b) => {
-            let part = |half: Half, polygon: &Polygon| match half {
-                Half::Part(part) => part,
-                _ => polygon.vertices().to_vec(),
-            };
-            let (of_a, of_b) = (part(of_a, a.0), part(of_b, b.0));
-            // Slivers too thin to be polygons are left to the contour.
-            let climbed = match (Polygon::new(of_a.clone()), Polygon::new(of_b.clone())) {
-                (Ok(p), Ok(q)) => climb((&p, &ladder.nodes(&p)), (&q, &ladder.nodes(&q)), tolerance),
-                _ => None,
-            };
-            climbed.or_else(|| contour(&of_a, &of_b))
-        }
-    }
-}
+    // Put them in an order of their own.
+    let [a, b] = if precedes(b.0, a.0) { [b, a] } else { [a, b] };
+    let (origin_a, origin_b) = (a.0.vertices()[0], b.0.vertices()[0]);
 
-/// Product Gauss for polygons that are apart, where the kernel is smooth; `None` where the ladder is too short.
-fn climb(a: (&Polygon, &Nodes), b: (&Polygon, &Nodes), tolerance: f64) -> Option<(f64, f64)> {
-    if a.1.centre.distance(b.1.centre) <= 1.3 * (a.1.radius + b.1.radius) {
+    // See which side of each other's plane they are on.
+    let side_a = Side::of(a.0, b.1.shape.normal, origin_b);
+    let side_b = Side::of(b.0, a.1.shape.normal, origin_a);
+    if side_a.highest <= 0.0 || side_b.highest <= 0.0 {
         return None;
     }
-    let mut coarse = product_gauss(a, b, 0);
-    for rung in 1..LADDER.len() {
-        let fine = product_gauss(a, b, rung);
-        let change = (fine - coarse).abs();
-        if change <= tolerance * fine {
-            return Some((fine, change));
-        }
-        coarse = fine;
+    if side_a.is_whole && side_b.is_whole {
+        let highest = [side_a.highest, side_b.highest];
+        let pair = Apart::new(ladder, [a.1, b.1], highest, origin_b - origin_a);
+        let corners = || [a.0, b.0].map(|p| Vector::from_point(origin_a, p.vertices()));
+        return exchange(&pair, corners, tolerance);
     }
-    None
+
+    // Keep of each what is in front of the other, as little as it may be right to the last digit.
+    let corners_a = Vector::from_point(origin_a, a.0.vertices());
+    let corners_b = Vector::from_point(origin_a, b.0.vertices());
+    let part_a = side_a.part(&corners_a, &corners_b)?;
+    let part_b = side_b.part(&corners_b, &corners_a)?;
+    let nodes = [ladder.bare(&part_a), ladder.bare(&part_b)];
+    let highest = [above(&part_a, &nodes[1].shape, part_b[0]), above(&part_b, &nodes[0].shape, part_a[0])];
+    if highest.iter().any(|height| *height <= 0.0) {
+        return None;
+    }
+    let pair = Apart::new(ladder, [&nodes[0], &nodes[1]], highest, point(part_b[0] - part_a[0]));
+    exchange(&pair, || [part_a, part_b], tolerance)
 }
 
-fn contour(a: &[Vec3], b: &[Vec3]) -> Option<(f64, f64)> {
-    let (value, error) = contour::exchange(a, b);
-    (value > 0.0).then_some((value, error))
+/// T of a pair whose parts see each other wholly, by the cheapest way that reaches the tolerance.
+fn exchange(pair: &Apart, corners: impl FnOnce() -> [Vec<Vector<Double>>; 2], tolerance: f64) -> Option<(f64, f64)> {
+    if let Some(rungs) = pair.rungs(tolerance, CHEAP) {
+        return Some(pair.sum(rungs));
+    }
+    // The shortest rule tells at least how much it is about.
+    let guess = pair.sum([0, 0]).0;
+    let close = Close::new(corners());
+    if let Some(found) = close.in_single(guess, tolerance) {
+        return Some(found);
+    }
+    match pair.rungs(tolerance, DEAR) {
+        Some(rungs) => Some(pair.sum(rungs)),
+        None => close.in_double(guess, tolerance),
+    }
 }
 
-/// ∑ wᵢ wⱼ (nₐ·d)(−n_b·d) / |d|⁴ over the points of one rung, d from the one to the other.
-fn product_gauss(a: (&Polygon, &Nodes), b: (&Polygon, &Nodes), rung: usize) -> f64 {
-    let (na, nb) = (a.0.normal(), b.0.normal());
-    let (p, q) = (&a.1.rungs[rung], &b.1.rungs[rung]);
-    let n = q.x.len();
-    let (qx, qy, qz, qw) = (&q.x[..n], &q.y[..n], &q.z[..n], &q.weight[..n]);
-    let mut sum = 0.0;
-    for i in 0..p.x.len() {
-        let (px, py, pz) = (p.x[i], p.y[i], p.z[i]);
-        let mut inner = 0.0;
-        for j in 0..n {
-            let (dx, dy, dz) = (qx[j] - px, qy[j] - py, qz[j] - pz);
-            let r_squared = dx * dx + dy * dy + dz * dz;
-            let cosines = (na.x * dx + na.y * dy + na.z * dz) * -(nb.x * dx + nb.y * dy + nb.z * dz);
-            inner += qw[j] * cosines / (r_squared * r_squared);
+/// An order of polygons that does not depend on which comes first.
+fn precedes(a: &Polygon, b: &Polygon) -> bool {
+    let (a, b) = (a.vertices(), b.vertices());
+    let differ = a.iter().zip(b).find(|(p, q)| p != q);
+    differ.map_or(a.len() < b.len(), |(p, q)| p.to_array() < q.to_array())
+}
+
+/// How a polygon lies to the plane of another.
+struct Side<'a> {
+    polygon: &'a Polygon,
+    normal: Vec3,
+    on_plane: Vec3,
+    highest: f64,
+    /// Nothing of it is behind.
+    is_whole: bool,
+}
+
+impl<'a> Side<'a> {
+    fn of(polygon: &'a Polygon, normal: Vec3, on_plane: Vec3) -> Self {
+        let mut side = Self { polygon, normal, on_plane, highest: 0.0, is_whole: true };
+        for v in polygon.vertices() {
+            let height = height(normal, on_plane, *v);
+            side.highest = side.highest.max(height);
+            side.is_whole &= height >= 0.0;
         }
-        sum += p.weight[i] * inner;
+        side
     }
-    sum
+
+    /// The part in front; both polygons' corners exactly.
+    fn part(&self, corners: &[Vector<Double>], plane: &[Vector<Double>]) -> Option<Vec<Vector<Double>>> {
+        if self.is_whole {
+            return Some(corners.to_vec());
+        }
+        let normal = Shape::exact_normal(plane)?;
+        let exact = |(v, corner): (&Vec3, &Vector<Double>)| match height(self.normal, self.on_plane, *v) {
+            0.0 => Double::default(),
+            _ => normal.dot(*corner - plane[0]),
+        };
+        let heights: Vec<Double> = self.polygon.vertices().iter().zip(corners).map(exact).collect();
+        let part = cut(corners, &heights);
+        (part.len() >= 3).then_some(part)
+    }
+}
+
+/// The greatest height above the plane of a shape, one point of which is given.
+fn above(part: &[Vector<Double>], plane: &Shape, on_plane: Vector<Double>) -> f64 {
+    part.iter().map(|v| plane.normal.dot(point(*v - on_plane))).fold(0.0, f64::max)
+}
+
+fn point(v: Vector<Double>) -> Vec3 {
+    Vec3::new(v.x.value(), v.y.value(), v.z.value())
 }
