@@ -187,6 +187,11 @@ impl Tracer {
         &self.shapes[handle as usize].vertices
     }
 
+    /// Number of a polygon in the list the tracer was made from, by handle.
+    pub fn polygon_of(&self, handle: u32) -> usize {
+        self.shapes[handle as usize].id as usize
+    }
+
     /// True if one of these polygons (see [`Shaft::Undecided`](super::Shaft::Undecided)) crosses the open segment.
     pub fn blocked_by(&self, handles: &[u32], from: Vec3, to: Vec3) -> bool {
         let ray = Ray { origin: from, direction: to - from };

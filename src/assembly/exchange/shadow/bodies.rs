@@ -1,0 +1,292 @@
+//! The facets of a scene joined into convex bodies.
+
+use super::body::{Body, Plane, Rim};
+use crate::geometry::{Polygon, Tracer, Vec3, height};
+use std::collections::HashMap;
+
+/// Solids of more facets are left in pieces: proving one convex costs facets times corners.
+const LARGEST: usize = 4096;
+
+/// All obstacles of a scene: every facet belongs to one body, and is one by itself.
+pub struct Bodies {
+    bodies: Vec<Body>,
+    /// Body of every handle of the tracer.
+    body_of: Vec<u32>,
+    /// The flat body of every handle alone; the same where it is no part of a larger one.
+    facet_of: Vec<u32>,
+}
+
+impl Bodies {
+    /// Joins facets that share an edge, corner for corner, and bend away from their fronts there, as far as what results is convex
+    /// and at most open on one side. Cost O(n log n) for scenes of bodies of bounded size.
+    pub fn new(tracer: &Tracer, polygons: &[&Polygon]) -> Self {
+        let mut bodies: Vec<Body> = polygons
+            .iter()
+            .map(|p| {
+                let whole = || Body::new(Vec::new(), Vec::new(), p.vertices().to_vec(), None);
+                Body::flat(p.vertices().to_vec(), p.normal()).unwrap_or_else(whole)
+            })
+            .collect();
+        let mut owner: Vec<u32> = (0..polygons.len() as u32).collect();
+        for (members, body) in Joints::of(polygons).bodies() {
+            members.iter().for_each(|&facet| owner[facet] = bodies.len() as u32);
+            bodies.push(body);
+        }
+        let ids: Vec<usize> = (0..tracer.n_polygons() as u32).map(|handle| tracer.polygon_of(handle)).collect();
+        let body_of = ids.iter().map(|&id| owner[id]).collect();
+        let facet_of = ids.iter().map(|&id| id as u32).collect();
+        Self { bodies, body_of, facet_of }
+    }
+
+    /// The body that the polygon with this handle belongs to.
+    pub fn body_of(&self, handle: u32) -> u32 {
+        self.body_of[handle as usize]
+    }
+
+    /// The body of this polygon alone.
+    pub fn facet_of(&self, handle: u32) -> u32 {
+        self.facet_of[handle as usize]
+    }
+
+    pub fn get(&self, body: u32) -> &Body {
+        &self.bodies[body as usize]
+    }
+}
+
+/// An edge of a facet, and the facet on the other side of it.
+struct Side {
+    from: Vec3,
+    to: Vec3,
+    /// The neighbour, if there is one alone and the two bend away from their fronts or not at all.
+    neighbour: Option<usize>,
+}
+
+/// How facets hang together.
+struct Joints<'a> {
+    polygons: &'a [&'a Polygon],
+    sides: Vec<Vec<Side>>,
+    /// Facets joined without bending share a number.
+    flat: Forest,
+    /// Facets joined at all share a number.
+    solid: Forest,
+}
+
+impl<'a> Joints<'a> {
+    fn of(polygons: &'a [&'a Polygon]) -> Self {
+        // Look up every edge run the other way.
+        let bits = |v: Vec3| v.to_array().map(|x| (x + 0.0).to_bits());
+        let edges = |p: &'a Polygon| {
+            let v = p.vertices();
+            (0..v.len()).map(move |k| (v[k], v[(k + 1) % v.len()]))
+        };
+        let mut run: HashMap<_, (usize, usize)> = HashMap::new();
+        for (facet, polygon) in polygons.iter().enumerate() {
+            for (from, to) in edges(polygon) {
+                run.entry((bits(from), bits(to))).and_modify(|entry| entry.1 += 1).or_insert((facet, 1));
+            }
+        }
+        let (mut flat, mut solid) = (Forest::new(polygons.len()), Forest::new(polygons.len()));
+        let sides = polygons
+            .iter()
+            .enumerate()
+            .map(|(facet, polygon)| {
+                edges(polygon)
+                    .map(|(from, to)| {
+                        let alone = run[&(bits(from), bits(to))].1 == 1;
+                        let other = run.get(&(bits(to), bits(from))).filter(|(other, count)| {
+                            alone && *count == 1 && *other != facet && bends_away(polygon, polygons[*other])
+                        });
+                        if let Some((other, _)) = other {
+                            solid.join(facet, *other);
+                            if is_flat(polygon, polygons[*other]) {
+                                flat.join(facet, *other);
+                            }
+                        }
+                        Side { from, to, neighbour: other.map(|(other, _)| *other) }
+                    })
+                    .collect()
+            })
+            .collect();
+        Self { polygons, sides, flat, solid }
+    }
+
+    /// The bodies of more than one facet.
+    fn bodies(mut self) -> Vec<(Vec<usize>, Body)> {
+        let n = self.polygons.len();
+        let (solid, flat): (Vec<usize>, Vec<usize>) = (0..n).map(|i| (self.solid.root(i), self.flat.root(i))).unzip();
+        let gather = |roots: &[usize], of: &[usize]| {
+            let mut groups: HashMap<usize, Vec<usize>> = HashMap::new();
+            of.iter().for_each(|&facet| groups.entry(roots[facet]).or_default().push(facet));
+            let mut groups: Vec<Vec<usize>> = groups.into_values().filter(|group| group.len() > 1).collect();
+            groups.sort();
+            groups
+        };
+        let everything: Vec<usize> = (0..n).collect();
+        let mut found = Vec::new();
+        for members in gather(&solid, &everything) {
+            if let Some(body) = self.solid_of(&members, &flat) {
+                found.push((members, body));
+                continue;
+            }
+            // Settle for its faces, where they are cut into patches.
+            for face in gather(&flat, &members) {
+                if let Some(body) = self.face_of(&face) {
+                    found.push((face, body));
+                }
+            }
+        }
+        found
+    }
+
+    /// The polyhedron of these facets, if it is convex and closed, or closed by one more face.
+    fn solid_of(&self, members: &[usize], flat: &[usize]) -> Option<Body> {
+        if members.len() > LARGEST {
+            return None;
+        }
+        // Number the faces, and find the edges between them and the ends left open.
+        let mut numbers: HashMap<usize, u32> = HashMap::new();
+        let mut faces = Vec::new();
+        for &facet in members {
+            numbers.entry(flat[facet]).or_insert_with(|| {
+                let polygon = self.polygons[facet];
+                faces.push(Plane { normal: polygon.normal(), point: polygon.centroid() });
+                faces.len() as u32 - 1
+            });
+        }
+        if faces.len() < 2 {
+            return None;
+        }
+        let (mut rims, mut open): (Vec<Rim>, Vec<Rim>) = (Vec::new(), Vec::new());
+        for &facet in members {
+            let face = numbers[&flat[facet]];
+            for side in &self.sides[facet] {
+                match side.neighbour.map(|other| numbers[&flat[other]]) {
+                    None => open.push(Rim { from: side.from, to: side.to, faces: [face, faces.len() as u32] }),
+                    Some(other) if other > face => {
+                        rims.push(Rim { from: side.from, to: side.to, faces: [face, other] });
+                    }
+                    Some(_) => {}
+                }
+            }
+        }
+        let mut corners: Vec<Vec3> =
+            members.iter().flat_map(|&facet| self.polygons[facet].vertices()).copied().collect();
+        corners.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).unwrap_or(std::cmp::Ordering::Equal));
+        corners.dedup();
+
+        // Close one opening by a face; it runs the other way around.
+        let opening = (!open.is_empty()).then_some(faces.len());
+        if opening.is_some() {
+            let outline: Vec<Vec3> = walk(&open)?.into_iter().rev().collect();
+            let origin = outline[0];
+            let twice: Vec3 = outline.windows(2).map(|pair| (pair[0] - origin).cross(pair[1] - origin)).sum();
+            let plane = Plane { normal: twice.try_normalize()?, point: origin };
+            if outline.iter().any(|v| plane.height(*v) != 0.0) {
+                return None;
+            }
+            faces.push(plane);
+            rims.extend(open);
+        }
+        if faces.iter().any(|face| corners.iter().any(|v| face.height(*v) > 0.0)) {
+            return None;
+        }
+        Some(Body::new(faces, straight(rims), corners, opening))
+    }
+
+    /// The polygon that these coplanar facets make, if it is convex.
+    fn face_of(&self, members: &[usize]) -> Option<Body> {
+        let inside = |facet: &usize| members.contains(facet);
+        let open: Vec<Rim> = members
+            .iter()
+            .flat_map(|&facet| &self.sides[facet])
+            .filter(|side| !side.neighbour.as_ref().is_some_and(inside))
+            .map(|side| Rim { from: side.from, to: side.to, faces: [0, 1] })
+            .collect();
+        let normal = self.polygons[members[0]].normal();
+        let body = Body::flat(walk(&open)?, normal)?;
+        let leans_in = |rim: &Rim| {
+            let inward = normal.cross(rim.to - rim.from).normalize_or_zero();
+            body.corners.iter().all(|v| height(inward, rim.from, *v) >= 0.0)
+        };
+        body.rims.iter().all(leans_in).then_some(body)
+    }
+}
+
+/// The one loop that these edges make, if they do.
+fn walk(edges: &[Rim]) -> Option<Vec<Vec3>> {
+    let bits = |v: Vec3| v.to_array().map(|x| (x + 0.0).to_bits());
+    let next: HashMap<_, Vec3> = edges.iter().map(|edge| (bits(edge.from), edge.to)).collect();
+    if next.len() != edges.len() {
+        return None;
+    }
+    let start = edges.first()?.from;
+    let mut outline = vec![start];
+    loop {
+        let to = *next.get(&bits(*outline.last()?))?;
+        if to == start {
+            break;
+        }
+        if outline.len() == edges.len() {
+            return None;
+        }
+        outline.push(to);
+    }
+    (outline.len() == edges.len()).then_some(outline)
+}
+
+/// Two faces of a convex body share one straight edge: joins its parts.
+fn straight(rims: Vec<Rim>) -> Vec<Rim> {
+    let mut whole: HashMap<[u32; 2], Rim> = HashMap::new();
+    for rim in rims {
+        let key = [rim.faces[0].min(rim.faces[1]), rim.faces[0].max(rim.faces[1])];
+        whole
+            .entry(key)
+            .and_modify(|known| {
+                let along = known.to - known.from;
+                if (rim.to - known.to).dot(along) > 0.0 {
+                    known.to = rim.to;
+                }
+                if (rim.from - known.from).dot(along) < 0.0 {
+                    known.from = rim.from;
+                }
+            })
+            .or_insert(rim);
+    }
+    let mut rims: Vec<Rim> = whole.into_values().collect();
+    rims.sort_by_key(|rim| rim.faces);
+    rims
+}
+
+/// True if each facet lies behind the other's plane or in it.
+fn bends_away(a: &Polygon, b: &Polygon) -> bool {
+    let behind = |p: &Polygon, q: &Polygon| p.vertices().iter().all(|v| height(q.normal(), q.centroid(), *v) <= 0.0);
+    behind(a, b) && behind(b, a)
+}
+
+/// True if the two facets lie in one plane and face the same way.
+fn is_flat(a: &Polygon, b: &Polygon) -> bool {
+    let within = |p: &Polygon, q: &Polygon| p.vertices().iter().all(|v| height(q.normal(), q.centroid(), *v) == 0.0);
+    a.normal().dot(b.normal()) > 0.0 && within(a, b) && within(b, a)
+}
+
+/// Disjoint sets.
+struct Forest(Vec<usize>);
+
+impl Forest {
+    fn new(n: usize) -> Self {
+        Self((0..n).collect())
+    }
+
+    fn root(&mut self, mut i: usize) -> usize {
+        while self.0[i] != i {
+            self.0[i] = self.0[self.0[i]];
+            i = self.0[i];
+        }
+        i
+    }
+
+    fn join(&mut self, i: usize, j: usize) {
+        let (a, b) = (self.root(i), self.root(j));
+        self.0[a.max(b)] = a.min(b);
+    }
+}

@@ -1,0 +1,122 @@
+//! Convex obstacles: what a ray has to pass is asked of their outline, not of every facet.
+
+use crate::geometry::{Vec3, height};
+
+/// A convex polyhedron, or a flat convex polygon, which is one with two opposite faces.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Planes of its faces, normals outward.
+    pub faces: Vec<Plane>,
+    pub rims: Vec<Rim>,
+    pub corners: Vec<Vec3>,
+    /// A ball around the corners.
+    pub centre: Vec3,
+    pub radius: f64,
+    /// The face that is not there: the opening of a body that stands on something.
+    pub opening: Option<usize>,
+}
+
+/// An oriented plane.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane {
+    pub normal: Vec3,
+    pub point: Vec3,
+}
+
+/// An edge between two faces, counter-clockwise about the first.
+#[derive(Clone, Copy, Debug)]
+pub struct Rim {
+    pub from: Vec3,
+    pub to: Vec3,
+    pub faces: [u32; 2],
+}
+
+/// How a polygon lies to a plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lie {
+    /// Somewhere above, nowhere below.
+    Above,
+    /// Nowhere above.
+    Below,
+    /// On both sides.
+    Across,
+}
+
+impl Plane {
+    /// Signed height of a point, zero within rounding.
+    pub fn height(&self, point: Vec3) -> f64 {
+        height(self.normal, self.point, point)
+    }
+
+    pub fn lie(&self, corners: &[Vec3]) -> Lie {
+        let (mut above, mut below) = (false, false);
+        for corner in corners {
+            let height = self.height(*corner);
+            above |= height > 0.0;
+            below |= height < 0.0;
+        }
+        match (above, below) {
+            (true, true) => Lie::Across,
+            (true, false) => Lie::Above,
+            (false, _) => Lie::Below,
+        }
+    }
+}
+
+impl Body {
+    /// A flat body: a convex outline, counter-clockwise about the normal.
+    pub fn flat(mut outline: Vec<Vec3>, normal: Vec3) -> Option<Self> {
+        straighten(&mut outline);
+        if outline.len() < 3 {
+            return None;
+        }
+        let plane = Plane { normal, point: outline[0] };
+        let rims = (0..outline.len())
+            .map(|k| Rim { from: outline[k], to: outline[(k + 1) % outline.len()], faces: [0, 1] })
+            .collect();
+        Some(Self::new(vec![plane, Plane { normal: -normal, ..plane }], rims, outline, None))
+    }
+
+    /// A body of these faces and edges.
+    pub fn new(faces: Vec<Plane>, rims: Vec<Rim>, corners: Vec<Vec3>, opening: Option<usize>) -> Self {
+        let centre = corners.iter().copied().sum::<Vec3>() / corners.len() as f64;
+        let radius = corners.iter().map(|v| v.distance(centre)).fold(0.0, f64::max);
+        Self { faces, rims, corners, centre, radius, opening }
+    }
+
+    /// True if no corner lies above the plane.
+    pub fn is_behind(&self, plane: &Plane) -> bool {
+        // Ask the ball first, leaving rounding to the corners.
+        if plane.normal.dot(self.centre - plane.point) > self.radius * (1.0 + 1e-9) {
+            return false;
+        }
+        self.corners.iter().all(|v| plane.height(*v) <= 0.0)
+    }
+
+    /// True if the polygon, with this normal, is outside: beyond some face, or on it and facing away.
+    pub fn excludes(&self, polygon: &[Vec3], normal: Vec3) -> bool {
+        self.faces.iter().any(|face| {
+            let heights = || polygon.iter().map(|v| face.height(*v));
+            heights().all(|h| h >= 0.0) && (heights().any(|h| h > 0.0) || normal.dot(face.normal) > 0.0)
+        })
+    }
+}
+
+/// Drops corners on the line between their neighbours: what is left of cutting a face into patches.
+pub fn straighten(outline: &mut Vec<Vec3>) {
+    let mut k = 0;
+    while outline.len() > 3 && k < outline.len() {
+        let n = outline.len();
+        let (before, here, after) = (outline[(k + n - 1) % n], outline[k], outline[(k + 1) % n]);
+        let sine = (here - before).cross(after - here).length();
+        if sine <= STRAIGHT * here.distance(before) * after.distance(here) {
+            outline.remove(k);
+            k = k.saturating_sub(1);
+        } else {
+            k += 1;
+        }
+    }
+}
+
+/// Sine of an angle that is none: some ulp of coordinates a thousand lengths away.
+const STRAIGHT: f64 = 1e-12;
