@@ -36,6 +36,7 @@ use crate::scene::Scene;
 use cluster::{Clusters, View};
 use quadrature::{Ladder, Nodes};
 use rayon::prelude::*;
+use shadow::{Bodies, Desk};
 use sinks::{Lost, Sink};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use visibility::{End, Visibility};
@@ -154,6 +155,7 @@ pub(super) fn compute(
     };
     let planes: Vec<&Polygon> = facets.iter().copied().chain(sinks.iter().filter_map(Sink::opening)).collect();
     let occluders = Tracer::occluders(&planes);
+    let bodies = Bodies::new(&occluders, &planes);
     let patches = (0..bundles.elements().len()).filter_map(|e| bundles.patch(e));
     let mut ends: Vec<End> = patches.map(|patch| End::new(&patch.polygon, patch.facet)).collect();
     let n = ends.len();
@@ -164,14 +166,21 @@ pub(super) fn compute(
     let clusters = Clusters::new(&ends, n, &planes, &occluders);
 
     // Visit the upper triangle row by row; long rows first, so that threads finish together.
-    let parts =
-        Parts { ends: &ends, n_sources: n, ladder: &ladder, nodes: &nodes, clusters: &clusters, occluders: &occluders };
+    let parts = Parts {
+        ends: &ends,
+        n_sources: n,
+        ladder: &ladder,
+        nodes: &nodes,
+        clusters: &clusters,
+        occluders: &occluders,
+        bodies: &bodies,
+    };
     let done = AtomicUsize::new(0);
     let rows: Vec<Row> = (0..n)
         .into_par_iter()
         .with_max_len(1)
-        .map(|i| {
-            let row = parts.upper_row(i, settings);
+        .map_init(Desk::default, |desk, i| {
+            let row = parts.upper_row(desk, i, settings);
             let finished = done.fetch_add(n - i, Ordering::Relaxed) + (n - i);
             progress(0.95 * finished as f64 / (0.5 * (n * (n + 1)) as f64));
             row
@@ -256,17 +265,18 @@ struct Parts<'a> {
     nodes: &'a [Nodes],
     clusters: &'a Clusters,
     occluders: &'a Tracer,
+    bodies: &'a Bodies,
 }
 
 impl Parts<'_> {
     /// The pairs (i, j), j > i, that exchange anything.
-    fn upper_row(&self, i: usize, settings: Exchange) -> Row {
+    fn upper_row(&self, desk: &mut Desk, i: usize, settings: Exchange) -> Row {
         let mut row = Row { entries: Vec::new(), lost: Vec::new(), tally: Tally::default() };
         self.clusters.for_each_partner(i, |j, view| {
             let [a, b] = [i, j].map(|k| (self.ends[k].polygon, &self.nodes[k]));
             let Some((exchange, error)) = quadrature::unoccluded(self.ladder, a, b, settings.tolerance) else { return };
             let mut tally = Tally { n_pairs: 1, quadrature_error: error / exchange, ..Tally::default() };
-            let (value, variance) = match self.visible(i, j, view, settings) {
+            let (value, variance) = match self.visible(desk, [i, j], view, settings) {
                 Visibility::Full => {
                     tally.n_clear = 1;
                     (exchange, 0.0)
@@ -296,11 +306,12 @@ impl Parts<'_> {
         row
     }
 
-    fn visible(&self, i: usize, j: usize, view: &View, settings: Exchange) -> Visibility {
+    fn visible(&self, desk: &mut Desk, [i, j]: [usize; 2], view: &View, settings: Exchange) -> Visibility {
         let View::Open(candidates) = view else { return Visibility::Full };
         let key = mix(&[settings.seed, 0, i as u64, j as u64]);
         let ends = [self.ends[i], self.ends[j]];
-        visibility::between(self.occluders, candidates, ends, settings.occlusion, settings.visibility_rays, key)
+        let scene = (self.occluders, self.bodies);
+        visibility::between(desk, scene, candidates, ends, settings.occlusion, settings.visibility_rays, key)
     }
 }
 

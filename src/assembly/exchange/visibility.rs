@@ -1,7 +1,7 @@
 //! How much of the exchange of two patches gets through what stands between them.
 
 use super::Occlusion;
-use super::shadow;
+use super::shadow::{Bodies, Desk, Shadow};
 use crate::geometry::{Polygon, Shaft, Tracer, Vec3};
 use crate::sampling::{Kronecker, mix};
 use std::f64::consts::PI;
@@ -41,7 +41,8 @@ impl<'a> End<'a> {
 /// The share is Σ k V / Σ k, k the kernel cosθ cosθ'/r² of each ray and V whether it gets through. Its variance is that of the
 /// weighted mean with half a ray added to each outcome, so that no finite number of rays claims certainty.
 pub fn between(
-    occluders: &Tracer,
+    desk: &mut Desk,
+    (occluders, bodies): (&Tracer, &Bodies),
     candidates: &[u32],
     [a, b]: [End; 2],
     occlusion: Occlusion,
@@ -54,10 +55,12 @@ pub fn between(
         Shaft::Undecided(handles) => handles,
     };
     if let Occlusion::Exact { tolerance } = occlusion {
-        let shapes: Vec<&[Vec3]> = handles.iter().map(|handle| occluders.corners_of(*handle)).collect();
         let tolerance = tolerance * a.etendue.min(b.etendue);
-        let (blocked, error) = shadow::blocked(a.polygon, b.polygon, &shapes, tolerance);
-        return Visibility::Integrated { blocked, error };
+        return match desk.shadow(bodies, a.polygon, b.polygon, &handles, tolerance) {
+            Shadow::Clear => Visibility::Full,
+            Shadow::Total => Visibility::None,
+            Shadow::Partial { blocked, error } => Visibility::Integrated { blocked, error },
+        };
     }
     let points = Kronecker::<4>::new(mix(&[key]));
     let (mut through, mut total, mut squares) = (0.0, 0.0, 0.0);

@@ -115,7 +115,12 @@ pub struct Sum {
 /// Σ over the cells, and its error estimate. Cells are counter-clockwise about `normal`.
 ///
 /// `integrand(term, x)` is called with points inside the cells of that term.
-pub fn integrate(cells: &mut Vec<Cell>, normal: Vec3, tolerance: f64, mut integrand: impl FnMut(usize, Vec3) -> f64) -> Sum {
+pub fn integrate(
+    cells: &mut Vec<Cell>,
+    normal: Vec3,
+    tolerance: f64,
+    mut integrand: impl FnMut(usize, Vec3) -> f64,
+) -> Sum {
     let mut n_points = 0;
     for cell in cells.iter_mut() {
         cell.begin(normal, &mut n_points, &mut integrand);

@@ -122,7 +122,8 @@ impl Desk {
             for &body in &self.bodies {
                 let body = bodies.get(body);
                 let n_across = body.faces.iter().filter(|face| face.lie(polygon) == Lie::Across).count();
-                let clearance = body.rims.iter().map(|rim| distance(centre, rim.from, rim.to)).fold(f64::INFINITY, f64::min);
+                let clearance =
+                    body.rims.iter().map(|rim| distance(centre, rim.from, rim.to)).fold(f64::INFINITY, f64::min);
                 strain = strain.max(radius / clearance + n_across as f64);
             }
             strain
@@ -271,13 +272,20 @@ impl Desk {
 
     /// The target cut by the front faces of an outline, and its edges that take part added to those that do already; `None` where
     /// nothing is hidden.
-    fn restrict(&mut self, part: &[Vec3], target: Range<usize>, active: Range<usize>, k: usize) -> Option<Range<usize>> {
+    fn restrict(
+        &mut self,
+        part: &[Vec3],
+        target: Range<usize>,
+        active: Range<usize>,
+        k: usize,
+    ) -> Option<Range<usize>> {
         let outline = self.outlines[k].clone();
         // Bodies side by side hide nothing together.
         for &other in &self.chain {
             let other = self.outlines[other].edges.clone();
             let apart = |one: Range<usize>, two: Range<usize>| {
-                let outside = |edge: &Edge| self.edges[two.clone()].iter().all(|corner| edge.never_hides(part, &[corner.from]));
+                let outside =
+                    |edge: &Edge| self.edges[two.clone()].iter().all(|corner| edge.never_hides(part, &[corner.from]));
                 self.edges[one].iter().any(outside)
             };
             if apart(outline.edges.clone(), other.clone()) || apart(other, outline.edges.clone()) {
