@@ -1,6 +1,7 @@
 //! The command line.
 
 use super::memory::Bytes;
+use crate::assembly::{Exchange, Occlusion};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -69,6 +70,15 @@ pub struct SceneArguments {
     #[arg(long, value_name = "METRES", value_parser = positive, allow_negative_numbers = true)]
     pub patch_size: Option<f64>,
 
+    /// Integrate partly visible pairs to this error of their exchange, as a share of the smaller étendue
+    #[arg(long, value_name = "ERROR", default_value = "1e-6", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(conflicts_with = "visibility_rays")]
+    pub visibility_error: f64,
+
+    /// Sample partly visible pairs by so many rays each, instead of integrating them
+    #[arg(long, value_name = "N", value_parser = rays, allow_negative_numbers = true)]
+    pub visibility_rays: Option<usize>,
+
     /// Memory that a run may take: what would take more is refused before it starts
     #[arg(long, value_name = "SIZE", default_value = "8GiB", allow_negative_numbers = true)]
     pub memory: Bytes,
@@ -76,6 +86,17 @@ pub struct SceneArguments {
     /// Seed of every random stream; equal seeds give equal numbers
     #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true)]
     pub seed: u64,
+}
+
+impl SceneArguments {
+    /// How exchange is to be computed.
+    pub fn exchange(&self) -> Exchange {
+        let settings = Exchange { seed: self.seed, ..Exchange::default() };
+        match self.visibility_rays {
+            Some(visibility_rays) => Exchange { occlusion: Occlusion::Sampled, visibility_rays, ..settings },
+            None => Exchange { occlusion: Occlusion::Exact { tolerance: self.visibility_error }, ..settings },
+        }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -150,6 +171,10 @@ fn positive(text: &str) -> Result<f64, String> {
 
 fn threads(text: &str) -> Result<usize, String> {
     whole(text, 1, 1024).map(|n| n as usize)
+}
+
+fn rays(text: &str) -> Result<usize, String> {
+    whole(text, 1, 1 << 30).map(|n| n as usize)
 }
 
 fn samples(text: &str) -> Result<u64, String> {

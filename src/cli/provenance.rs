@@ -1,7 +1,7 @@
 //! Where the numbers of a run came from.
 
 use super::scene::Chosen;
-use crate::assembly::Exchange;
+use crate::assembly::{Exchange, Occlusion};
 use crate::study::Provenance;
 
 /// The provenance of a command; `settings` are those that only it has.
@@ -13,11 +13,16 @@ pub fn provenance<const N: usize>(
 ) -> Provenance {
     let shared = [
         ("quadrature_tolerance", format!("{:e}", exchange.tolerance)),
-        ("visibility_rays_a_pair", exchange.visibility_rays.to_string()),
-        ("sink_rays_a_patch", exchange.sink_rays.to_string()),
         ("closure_repair", exchange.repair.to_string()),
     ];
-    let settings = settings.into_iter().chain(shared);
+    let occlusion = match exchange.occlusion {
+        Occlusion::Exact { tolerance } => vec![("visibility_error", format!("{tolerance:e}"))],
+        Occlusion::Sampled => vec![
+            ("visibility_rays_a_pair", exchange.visibility_rays.to_string()),
+            ("sink_rays_a_patch", exchange.sink_rays.to_string()),
+        ],
+    };
+    let settings = settings.into_iter().chain(shared).chain(occlusion);
     Provenance {
         version: env!("CARGO_PKG_VERSION").to_string(),
         command,

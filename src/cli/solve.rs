@@ -8,7 +8,7 @@ use super::provenance::provenance;
 use super::record::record;
 use super::scene::choose;
 use super::table::table;
-use crate::assembly::{Exchange, System, assemble_watched};
+use crate::assembly::{System, assemble_watched};
 use crate::basis::Bundles;
 use crate::solver::{self, Iteration, SolveReport, Stop};
 use crate::study::Watch;
@@ -38,7 +38,7 @@ pub fn run(arguments: &Arguments, solve: &Solve, command: Vec<String>) -> Result
     }
 
     let bars = Bars::new(arguments);
-    let exchange = Exchange { seed: solve.scene.seed, ..Exchange::default() };
+    let exchange = solve.scene.exchange();
     let bundles = Bundles::new(&chosen.scene, chosen.resolution)?;
     let system = assemble_watched(&chosen.scene, &bundles, exchange, &|done| bars.progress("assemble", done))?;
     bars.progress("solve", 0.0);

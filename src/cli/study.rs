@@ -6,7 +6,7 @@ use super::output;
 use super::progress::Bars;
 use super::provenance::provenance;
 use super::scene::choose;
-use crate::assembly::{Exchange, Gather};
+use crate::assembly::Gather;
 use crate::study::{SolverRun, StudyOutcome, StudySettings};
 use crate::{report, study};
 use std::path::{Path, PathBuf};
@@ -37,7 +37,7 @@ pub fn run(arguments: &Arguments, study: &Study, command: Vec<String>) -> Result
         resolution: chosen.resolution,
         n_levels: 3,
         tolerance: study.tolerance,
-        exchange: Exchange { seed, ..Exchange::default() },
+        exchange: study.scene.exchange(),
         walk_samples: study.walk_samples,
         path_samples: study.path_samples,
         significance: SIGNIFICANCE,
