@@ -61,6 +61,8 @@ pub struct Census {
     pub n_averted: usize,
     pub n_hidden: usize,
     pub n_clear: usize,
+    /// How many pairs of clusters were looked at for it.
+    pub n_shafts: usize,
 }
 
 impl Clusters {
@@ -108,6 +110,7 @@ impl Clusters {
             clusters.census.n_averted += census.n_averted;
             clusters.census.n_hidden += census.n_hidden;
             clusters.census.n_clear += census.n_clear;
+            clusters.census.n_shafts += census.n_shafts;
             links.into_iter().for_each(|(node, link)| clusters.links[node as usize].push(link));
         }
         clusters
@@ -189,6 +192,7 @@ impl Clusters {
             return;
         }
         let is_facing = matches!(sides, (Half::InFront, Half::InFront));
+        census.n_shafts += 1;
         let ends = [(&one.polygon, one.facet), (&other.polygon, other.facet)];
         let shaft = match candidates {
             None => Shaft::between(occluders, ends[0], ends[1]),

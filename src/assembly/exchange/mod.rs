@@ -85,6 +85,9 @@ pub enum Occlusion {
 pub struct ExchangeReport {
     /// Pairs of patches that whole clusters settled at once: averted, hidden or clear.
     pub n_by_clusters: usize,
+    /// How often something was looked for between two clusters, or two patches: the work that visibility takes before any integral
+    /// or ray.
+    pub n_shafts: usize,
     /// Pairs of patches that face each other.
     pub n_pairs: usize,
     /// Of these: proved clear, so right to the quadrature's error.
@@ -134,6 +137,8 @@ struct Entry {
 #[derive(Clone, Copy, Default)]
 struct Tally {
     n_pairs: usize,
+    /// Of these: not settled by clusters.
+    n_open: usize,
     n_clear: usize,
     n_hidden: usize,
     n_integrated: usize,
@@ -215,6 +220,7 @@ pub(super) fn compute(
     let census = clusters.census;
     let mut report = ExchangeReport {
         n_by_clusters: census.n_averted + census.n_hidden + census.n_clear,
+        n_shafts: census.n_shafts + total.n_open,
         n_pairs: total.n_pairs + census.n_hidden,
         n_clear: total.n_clear,
         n_hidden: total.n_hidden + census.n_hidden,
@@ -275,7 +281,8 @@ impl Parts<'_> {
         self.clusters.for_each_partner(i, |j, view| {
             let [a, b] = [i, j].map(|k| (self.ends[k].polygon, &self.nodes[k]));
             let Some((exchange, error)) = quadrature::unoccluded(self.ladder, a, b, settings.tolerance) else { return };
-            let mut tally = Tally { n_pairs: 1, quadrature_error: error / exchange, ..Tally::default() };
+            let n_open = usize::from(matches!(view, View::Open(_)));
+            let mut tally = Tally { n_pairs: 1, n_open, quadrature_error: error / exchange, ..Tally::default() };
             let (value, variance) = match self.visible(desk, [i, j], view, settings) {
                 Visibility::Full => {
                     tally.n_clear = 1;
@@ -318,6 +325,7 @@ impl Parts<'_> {
 impl Tally {
     fn add(&mut self, other: Self) {
         self.n_pairs += other.n_pairs;
+        self.n_open += other.n_open;
         self.n_clear += other.n_clear;
         self.n_hidden += other.n_hidden;
         self.n_integrated += other.n_integrated;
