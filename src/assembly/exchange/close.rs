@@ -3,6 +3,7 @@
 use super::contour::{self, Integral};
 use super::double::Double;
 use super::real::{Real, Vector};
+use pulp::Arch;
 
 /// Error of the contour's value in ulp of its terms' size: twice the largest found on 10⁵ random pairs.
 const ROUNDING: f64 = 2.0;
@@ -15,13 +16,14 @@ const FINEST: f64 = 2.0 * f64::EPSILON;
 
 /// T of two polygons wholly in front of each other's planes, in common coordinates, and its error estimate.
 pub struct Close {
+    arch: Arch,
     corners: [Vec<Vector<Double>>; 2],
     /// The length that `corners` are measured in: a power of two, so that nothing is rounded, and logarithms are small.
     unit: f64,
 }
 
 impl Close {
-    pub fn new(corners: [Vec<Vector<Double>>; 2]) -> Self {
+    pub fn new(arch: Arch, corners: [Vec<Vector<Double>>; 2]) -> Self {
         // Go around the smaller one: the terms of its edges are small as well.
         let reach = |p: &Vec<Vector<Double>>| p.iter().map(|v| (*v - p[0]).rounded().length()).fold(0.0, f64::max);
         let [a, b] = corners;
@@ -29,7 +31,7 @@ impl Close {
         let size = corners.iter().flatten().map(|v| v.rounded().length()).fold(0.0, f64::max);
         let unit = size.log2().round().exp2();
         let scale = Double::from(1.0 / unit);
-        Self { corners: corners.map(|p| p.into_iter().map(|v| v.scaled(scale)).collect()), unit }
+        Self { arch, corners: corners.map(|p| p.into_iter().map(|v| v.scaled(scale)).collect()), unit }
     }
 
     /// In f64; `None` where that does not reach the relative tolerance. T is of the order of `guess`.
@@ -37,7 +39,7 @@ impl Close {
         let [a, b] = self.corners.each_ref().map(|p| p.iter().map(|v| v.rounded()).collect::<Vec<_>>());
         let mut guess = guess / (self.unit * self.unit);
         for _ in 0..2 {
-            let found = contour::exchange(&a, &b, SHARES[0] * tolerance * guess);
+            let found = contour::exchange(self.arch, &a, &b, SHARES[0] * tolerance * guess);
             let (value, error) = weighed(&found);
             if error <= tolerance * value {
                 return Some(self.measured(value, error));
@@ -57,6 +59,7 @@ impl Close {
         let mut best = (0.0, f64::INFINITY);
         for share in SHARES {
             let found = contour::exchange(
+                self.arch,
                 &self.corners[0],
                 &self.corners[1],
                 share * tolerance * guess / (self.unit * self.unit),

@@ -20,6 +20,7 @@
 //! What it does not do: the sum cancels, so that only an absolute accuracy is its own; its `size` tells.
 
 use super::real::{Real, Vector};
+use pulp::{Arch, Simd, WithSimd};
 
 /// An integral and what is known of its error.
 #[derive(Clone, Copy, Debug)]
@@ -32,11 +33,11 @@ pub struct Integral<R> {
 }
 
 /// T of two convex polygons, each wholly in front of the other's plane, in units of their coordinates squared; these should be of
-/// order one. The truncation is kept below some `tolerance`, absolute, but no less than a hundredth of the rounding.
-pub fn exchange<R: Real>(a: &[Vector<R>], b: &[Vector<R>], tolerance: f64) -> Integral<R> {
+/// order one. The truncation is kept below some `tolerance`, absolute.
+pub fn exchange<R: Real>(arch: Arch, a: &[Vector<R>], b: &[Vector<R>], tolerance: f64) -> Integral<R> {
     let (outer, inner) = (edges_of(a), edges_of(b));
-    let share = tolerance.max(0.01 * R::EPSILON) / (outer.len() * inner.len()) as f64;
-    let mut total = Total { sum: R::from(0.0), truncation: 0.0, size: 0.0, share };
+    let share = tolerance / (outer.len() * inner.len()) as f64;
+    let mut total = Total { arch, sum: R::from(0.0), truncation: 0.0, size: 0.0, share };
     for e in &outer {
         let ends: Vec<End<R>> = b.iter().map(|q| End::new(e, *q)).collect();
         for f in &inner {
@@ -127,6 +128,7 @@ fn differences<R: Real>(squares: [R; 2], sigmas: [R; 2], length: R) -> (R, R, [f
 type Singularity = (f64, f64);
 
 struct Total<R> {
+    arch: Arch,
     sum: R,
     truncation: f64,
     size: f64,
@@ -155,8 +157,9 @@ impl<R: Real> Total<R> {
         }
 
         // What is left by quadrature.
-        let swept = Swept::new(e, f, ends);
-        let arcs = swept.integrate(self.share / w.max(1e-3));
+        let swept = Swept::new(self.arch, e, f, ends);
+        let least = 1e-3 * R::EPSILON * e.length.value();
+        let arcs = swept.integrate((self.share / w).max(least));
         self.sum = self.sum + cosine * (sum + arcs.value);
         self.truncation += w * arcs.truncation;
         self.size += w * (size + arcs.size + sum.value().abs());
@@ -165,6 +168,7 @@ impl<R: Real> Total<R> {
 
 /// h φ along the outer edge.
 struct Swept<R> {
+    arch: Arch,
     /// The vector from the inner line to x is turn₀ − s turn₁ but for a right angle; its length is h.
     turns: [Vector<R>; 2],
     /// s₀ = along − s cosine.
@@ -180,11 +184,12 @@ struct Swept<R> {
 }
 
 impl<R: Real> Swept<R> {
-    fn new(e: &Edge<R>, f: &Edge<R>, ends: [&End<R>; 2]) -> Self {
+    fn new(arch: Arch, e: &Edge<R>, f: &Edge<R>, ends: [&End<R>; 2]) -> Self {
         let turns = [f.tangent.cross(ends[0].offset), f.tangent.cross(e.tangent)];
         let along = ends[0].offset.dot(f.tangent);
         let cosine = e.tangent.dot(f.tangent);
         let mut swept = Self {
+            arch,
             turns,
             along,
             cosine,
@@ -220,11 +225,13 @@ impl<R: Real> Swept<R> {
     }
 
     /// h at s.
+    #[inline(always)]
     fn height(&self, s: R) -> R {
         (self.turns[0] - self.turns[1].scaled(s)).length()
     }
 
     /// h φ at s.
+    #[inline(always)]
     fn at(&self, s: R) -> R {
         let h = self.height(s);
         let from = self.along - s * self.cosine;
@@ -282,15 +289,9 @@ impl<R: Real> Swept<R> {
             self.panel([cut, to], tolerance, total);
             return;
         }
-        let (start, width) = (R::from(from), R::from(to) - R::from(from));
-        let (mut sum, mut size) = (R::from(0.0), 0.0);
-        for (node, weight) in R::gauss(n as usize) {
-            let term = *weight * self.at((start + *node * width) * self.outer_length);
-            size += term.value();
-            sum = sum + term;
-        }
-        total.value = total.value + width * sum;
-        total.size += share * size;
+        let mean = self.arch.dispatch(Panel { swept: self, from, to, rule: R::gauss(n as usize) });
+        total.value = total.value + (R::from(to) - R::from(from)) * mean;
+        total.size += share * mean.value();
         total.truncation += bound * rho.max(1.0).powf(-2.0 * n);
     }
 
@@ -309,5 +310,28 @@ impl<R: Real> Swept<R> {
             }
         }
         (0.95 * rho.min(40.0), nearest)
+    }
+}
+
+/// A panel of the outer edge, in shares of it, and the rule that takes it.
+struct Panel<'a, R: Real> {
+    swept: &'a Swept<R>,
+    from: f64,
+    to: f64,
+    rule: &'static [(R, R)],
+}
+
+impl<R: Real> WithSimd for Panel<'_, R> {
+    type Output = R;
+
+    /// The mean of h φ over the panel.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> R {
+        let (start, width) = (R::from(self.from), R::from(self.to) - R::from(self.from));
+        let mut sum = R::from(0.0);
+        for (node, weight) in self.rule {
+            sum = sum + *weight * self.swept.at((start + *node * width) * self.swept.outer_length);
+        }
+        sum
     }
 }

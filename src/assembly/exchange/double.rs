@@ -18,6 +18,7 @@ pub struct Double {
 }
 
 /// a + b exactly (Knuth).
+#[inline(always)]
 fn two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     let b_part = high - a;
@@ -25,12 +26,14 @@ fn two_sum(a: f64, b: f64) -> Double {
 }
 
 /// a + b exactly, for |a| ≥ |b| (Dekker).
+#[inline(always)]
 fn quick_two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     Double { high, low: b - (high - a) }
 }
 
 /// a b exactly.
+#[inline(always)]
 fn two_product(a: f64, b: f64) -> Double {
     let high = a * b;
     Double { high, low: a.mul_add(b, -high) }
@@ -99,6 +102,7 @@ static ARC_SERIES: LazyLock<[Double; 12]> = LazyLock::new(|| {
 });
 
 impl From<f64> for Double {
+    #[inline(always)]
     fn from(value: f64) -> Self {
         Self { high: value, low: 0.0 }
     }
@@ -106,6 +110,7 @@ impl From<f64> for Double {
 
 impl Add for Double {
     type Output = Self;
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         let (mut sum, tail) = (two_sum(self.high, other.high), two_sum(self.low, other.low));
         sum = quick_two_sum(sum.high, sum.low + tail.high);
@@ -115,6 +120,7 @@ impl Add for Double {
 
 impl Neg for Double {
     type Output = Self;
+    #[inline(always)]
     fn neg(self) -> Self {
         Self { high: -self.high, low: -self.low }
     }
@@ -122,6 +128,7 @@ impl Neg for Double {
 
 impl Sub for Double {
     type Output = Self;
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         self + -other
     }
@@ -129,6 +136,7 @@ impl Sub for Double {
 
 impl Mul for Double {
     type Output = Self;
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         let product = two_product(self.high, other.high);
         let low = self.high.mul_add(other.low, self.low * other.high);
@@ -138,6 +146,7 @@ impl Mul for Double {
 
 impl Div for Double {
     type Output = Self;
+    #[inline(always)]
     fn div(self, other: Self) -> Self {
         // Long division: three digits of 53 bits.
         let first = self.high / other.high;
@@ -149,7 +158,7 @@ impl Div for Double {
 }
 
 impl Real for Double {
-    const EPSILON: f64 = 4.0 * f64::EPSILON * f64::EPSILON;
+    const EPSILON: f64 = f64::EPSILON * f64::EPSILON;
     const MOST_NODES: usize = 48;
 
     fn gauss(n: usize) -> &'static [(Self, Self)] {
@@ -158,10 +167,12 @@ impl Real for Double {
         &RULES[n]
     }
 
+    #[inline(always)]
     fn value(self) -> f64 {
         self.high + self.low
     }
 
+    #[inline(always)]
     fn sqrt(self) -> Self {
         if self.high <= 0.0 {
             return Self::default();
@@ -190,6 +201,7 @@ impl Real for Double {
         start + (step - Double::from(0.5 * step.high * step.high))
     }
 
+    #[inline(always)]
     fn atan2(self, x: Self) -> Self {
         let y = self;
         // Reflect into the first octants, turn by the nearest angle of the table, and sum the series of what is left.

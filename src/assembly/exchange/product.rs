@@ -4,11 +4,11 @@
 //! T = ∫∫ cosθ cosθ' / r² dA dA' = Σᵢ Σⱼ (wᵢ hᵢ) (wⱼ hⱼ) / r⁴ᵢⱼ,   h the height above the other's plane
 //! ```
 //!
-//! for r cosθ is the height of the *other* point above the plane. Every term is positive: nothing cancels. Cost: one division for two
-//! terms, eight lanes wide where the machine is; the order of every sum is fixed, so that bits depend on no machine's width.
+//! for r cosθ is the height of the *other* point above the plane. Every term is positive: nothing cancels. Cost: one division for four
+//! terms, as many lanes wide as the machine; products and sums are fused and in a fixed order, so that bits depend on no machine.
 
 use crate::geometry::Vec3;
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 
 /// Lanes that are summed side by side.
 const LANES: usize = 8;
@@ -41,47 +41,55 @@ pub struct Plane {
     pub offset: f64,
 }
 
-/// Σᵢ Σⱼ over the points of both, `planes` those of the *other* polygon in each one's coordinates, `shift` what leads from the
-/// coordinates of the second to those of the first.
-pub fn sum(arch: Arch, points: [&Points; 2], planes: [Plane; 2], shift: Vec3) -> f64 {
-    arch.dispatch(
-        #[inline(always)]
-        || lanes(points, planes, shift),
-    )
+/// Two polygons' points and what their sum needs.
+pub struct Product<'a> {
+    pub points: [&'a Points; 2],
+    /// Of the *other* polygon, in each one's coordinates.
+    pub planes: [Plane; 2],
+    /// From the coordinates of the second to those of the first.
+    pub shift: Vec3,
 }
 
-/// Points of the first that share a division.
-const SHARED: usize = 2;
+impl Product<'_> {
+    /// Σᵢ Σⱼ over the points of both.
+    pub fn sum(self, arch: Arch) -> f64 {
+        arch.dispatch(self)
+    }
+}
+
+impl WithSimd for Product<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
+        lanes(&self)
+    }
+}
 
 #[inline(always)]
-fn lanes([outer, inner]: [&Points; 2], planes: [Plane; 2], shift: Vec3) -> f64 {
-    let weighted = |group: &[[f64; LANES]; 4], plane: &Plane| -> [f64; LANES] {
-        let [x, y, z, w] = group;
-        let Plane { normal, offset } = *plane;
-        std::array::from_fn(
-            #[inline(always)]
-            |l| w[l] * (normal.x * x[l] + normal.y * y[l] + normal.z * z[l] + offset),
-        )
-    };
+fn lanes(product: &Product) -> f64 {
+    let Product { points: [outer, inner], planes, shift } = product;
     let mut sum = [0.0; LANES];
     for group in &inner.groups {
         // Move a group of points to the coordinates of the first polygon, its weights times its heights.
         let weights = weighted(group, &planes[1]);
-        let x: [f64; LANES] = std::array::from_fn(|l| group[0][l] + shift.x);
-        let y: [f64; LANES] = std::array::from_fn(|l| group[1][l] + shift.y);
-        let z: [f64; LANES] = std::array::from_fn(|l| group[2][l] + shift.z);
+        let (x, y, z) = (moved(&group[0], shift.x), moved(&group[1], shift.y), moved(&group[2], shift.z));
         let mut inner_sum = [0.0; LANES];
         for from in &outer.groups {
             let heights = weighted(from, &planes[0]);
-            for k in (0..LANES).step_by(SHARED) {
-                let r4 = |k: usize, l: usize| {
-                    let (dx, dy, dz) = (x[l] - from[0][k], y[l] - from[1][k], z[l] - from[2][k]);
-                    let r_squared = dx * dx + dy * dy + dz * dz;
-                    r_squared * r_squared
-                };
+            for k in (0..LANES).step_by(4) {
+                let [h0, h1, h2, h3] = [heights[k], heights[k + 1], heights[k + 2], heights[k + 3]];
                 for l in 0..LANES {
-                    let (one, other) = (r4(k, l), r4(k + 1, l));
-                    inner_sum[l] += (heights[k] * other + heights[k + 1] * one) / (one * other);
+                    let r4 = |k: usize| {
+                        let (dx, dy, dz) = (x[l] - from[0][k], y[l] - from[1][k], z[l] - from[2][k]);
+                        let r_squared = dz.mul_add(dz, dy.mul_add(dy, dx * dx));
+                        r_squared * r_squared
+                    };
+                    // h₀/a + h₁/b + h₂/c + h₃/d over their common denominator.
+                    let [a, b, c, d] = [r4(k), r4(k + 1), r4(k + 2), r4(k + 3)];
+                    let (ab, cd) = (a * b, c * d);
+                    let (left, right) = (h0.mul_add(b, h1 * a), h2.mul_add(d, h3 * c));
+                    inner_sum[l] += left.mul_add(cd, right * ab) / (ab * cd);
                 }
             }
         }
@@ -91,4 +99,23 @@ fn lanes([outer, inner]: [&Points; 2], planes: [Plane; 2], shift: Vec3) -> f64 {
     }
     let [a, b, c, d, e, f, g, h] = sum;
     ((a + b) + (c + d)) + ((e + f) + (g + h))
+}
+
+#[inline(always)]
+fn moved(coordinates: &[f64; LANES], by: f64) -> [f64; LANES] {
+    let mut sum = *coordinates;
+    for at in &mut sum {
+        *at += by;
+    }
+    sum
+}
+
+/// The weights of a group times its heights.
+#[inline(always)]
+fn weighted([x, y, z, weight]: &[[f64; LANES]; 4], Plane { normal, offset }: &Plane) -> [f64; LANES] {
+    let mut heights = [0.0; LANES];
+    for l in 0..LANES {
+        heights[l] = weight[l] * x[l].mul_add(normal.x, y[l].mul_add(normal.y, z[l].mul_add(normal.z, *offset)));
+    }
+    heights
 }

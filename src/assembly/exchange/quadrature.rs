@@ -8,7 +8,7 @@ use super::clip::cut;
 use super::close::Close;
 use super::double::Double;
 use super::real::{Real, Vector};
-use super::shape::Shape;
+use super::shape::{Shape, point};
 use crate::geometry::{Polygon, Vec3, height};
 
 /// The longest product rule that is tried before contours: as dear as they are.
@@ -34,7 +34,7 @@ pub fn unoccluded(ladder: &Ladder, a: (&Polygon, &Nodes), b: (&Polygon, &Nodes),
     }
     if side_a.is_whole && side_b.is_whole {
         let highest = [side_a.highest, side_b.highest];
-        let pair = Apart::new(ladder, [a.1, b.1], highest, origin_b - origin_a);
+        let pair = Apart::new(ladder, [a.1, b.1], highest, Vector::difference(origin_a, origin_b));
         let corners = || [a.0, b.0].map(|p| Vector::from_point(origin_a, p.vertices()));
         return exchange(&pair, corners, tolerance);
     }
@@ -49,7 +49,7 @@ pub fn unoccluded(ladder: &Ladder, a: (&Polygon, &Nodes), b: (&Polygon, &Nodes),
     if highest.iter().any(|height| *height <= 0.0) {
         return None;
     }
-    let pair = Apart::new(ladder, [&nodes[0], &nodes[1]], highest, point(part_b[0] - part_a[0]));
+    let pair = Apart::new(ladder, [&nodes[0], &nodes[1]], highest, part_b[0] - part_a[0]);
     exchange(&pair, || [part_a, part_b], tolerance)
 }
 
@@ -60,7 +60,7 @@ fn exchange(pair: &Apart, corners: impl FnOnce() -> [Vec<Vector<Double>>; 2], to
     }
     // The shortest rule tells at least how much it is about.
     let guess = pair.sum([0, 0]).0;
-    let close = Close::new(corners());
+    let close = Close::new(pair.arch(), corners());
     if let Some(found) = close.in_single(guess, tolerance) {
         return Some(found);
     }
@@ -103,7 +103,7 @@ impl<'a> Side<'a> {
         if self.is_whole {
             return Some(corners.to_vec());
         }
-        let normal = Shape::exact_normal(plane)?;
+        let normal = Shape::normal_of(plane)?;
         let exact = |(v, corner): (&Vec3, &Vector<Double>)| match height(self.normal, self.on_plane, *v) {
             0.0 => Double::default(),
             _ => normal.dot(*corner - plane[0]),
@@ -117,8 +117,4 @@ impl<'a> Side<'a> {
 /// The greatest height above the plane of a shape, one point of which is given.
 fn above(part: &[Vector<Double>], plane: &Shape, on_plane: Vector<Double>) -> f64 {
     part.iter().map(|v| plane.normal.dot(point(*v - on_plane))).fold(0.0, f64::max)
-}
-
-fn point(v: Vector<Double>) -> Vec3 {
-    Vec3::new(v.x.value(), v.y.value(), v.z.value())
 }

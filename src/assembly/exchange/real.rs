@@ -49,10 +49,12 @@ impl Real for f64 {
         &RULES[n]
     }
 
+    #[inline(always)]
     fn value(self) -> f64 {
         self
     }
 
+    #[inline(always)]
     fn sqrt(self) -> f64 {
         self.max(0.0).sqrt()
     }
@@ -65,6 +67,7 @@ impl Real for f64 {
         f64::ln_1p(self)
     }
 
+    #[inline(always)]
     fn atan2(self, x: f64) -> f64 {
         f64::atan2(self, x)
     }
@@ -79,10 +82,12 @@ pub struct Vector<R> {
 }
 
 impl<R: Real> Vector<R> {
+    #[inline(always)]
     pub fn dot(self, other: Self) -> R {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
+    #[inline(always)]
     pub fn cross(self, other: Self) -> Self {
         Self {
             x: self.y * other.z - self.z * other.y,
@@ -91,10 +96,12 @@ impl<R: Real> Vector<R> {
         }
     }
 
+    #[inline(always)]
     pub fn length(self) -> R {
         self.dot(self).sqrt()
     }
 
+    #[inline(always)]
     pub fn scaled(self, factor: R) -> Self {
         Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
     }
@@ -102,6 +109,7 @@ impl<R: Real> Vector<R> {
 
 impl<R: Real> Add for Vector<R> {
     type Output = Self;
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
     }
@@ -109,20 +117,22 @@ impl<R: Real> Add for Vector<R> {
 
 impl<R: Real> Sub for Vector<R> {
     type Output = Self;
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
     }
 }
 
 impl Vector<Double> {
+    /// From one point to another, exactly.
+    pub fn difference(from: Vec3, to: Vec3) -> Self {
+        let [x, y, z] = [(to.x, from.x), (to.y, from.y), (to.z, from.z)].map(|(to, from)| Double::difference(to, from));
+        Self { x, y, z }
+    }
+
     /// From one point to others, exactly.
     pub fn from_point(origin: Vec3, points: &[Vec3]) -> Vec<Self> {
-        let difference = |p: &Vec3| Self {
-            x: Double::difference(p.x, origin.x),
-            y: Double::difference(p.y, origin.y),
-            z: Double::difference(p.z, origin.z),
-        };
-        points.iter().map(difference).collect()
+        points.iter().map(|p| Self::difference(origin, *p)).collect()
     }
 
     /// The nearest vector of f64.

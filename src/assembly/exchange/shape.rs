@@ -11,6 +11,7 @@ pub struct Shape {
     pub centre: Vec3,
     pub radius: f64,
     pub normal: Vec3,
+    pub exact_normal: Vector<Double>,
     cells: Vec<Cell>,
 }
 
@@ -24,7 +25,7 @@ impl Shape {
     /// The corners are relative to the first. Where they span no area there is no point of it either.
     pub fn new(corners: &[Vector<Double>]) -> Self {
         let nought = Double::default();
-        let normal = Self::exact_normal(corners).unwrap_or(Vector { x: nought, y: nought, z: nought });
+        let normal = Self::normal_of(corners).unwrap_or(Vector { x: nought, y: nought, z: nought });
         let origin = corners[0];
 
         // Triangles are collapsed squares; polygons of more than four corners are fans of triangles.
@@ -33,19 +34,19 @@ impl Shape {
                 let [before, here, after] = [quad[(k + 3) % 4], quad[k], quad[(k + 1) % 4]];
                 (after - here).cross(before - here).dot(normal).value()
             };
-            Cell { corners: quad.map(|v| point(v.rounded())), areas: std::array::from_fn(area) }
+            Cell { corners: quad.map(point), areas: std::array::from_fn(area) }
         };
         let cells: Vec<Cell> = match *corners {
             [a, b, c, d] => vec![cell([a, b, c, d])],
             _ => corners[1..].windows(2).map(|pair| triangle(cell([origin, pair[0], pair[1], origin]))).collect(),
         };
-        let centre = corners.iter().map(|v| point(v.rounded())).sum::<Vec3>() / corners.len() as f64;
-        let radius = corners.iter().map(|v| point(v.rounded()).distance(centre)).fold(0.0, f64::max);
-        Self { centre, radius, normal: point(normal.rounded()), cells }
+        let centre = corners.iter().map(|v| point(*v)).sum::<Vec3>() / corners.len() as f64;
+        let radius = corners.iter().map(|v| point(*v).distance(centre)).fold(0.0, f64::max);
+        Self { centre, radius, normal: point(normal), exact_normal: normal, cells }
     }
 
     /// The unit normal of a polygon, in double-double; `None` where it has no area.
-    pub fn exact_normal(corners: &[Vector<Double>]) -> Option<Vector<Double>> {
+    pub fn normal_of(corners: &[Vector<Double>]) -> Option<Vector<Double>> {
         // Sum the fan of triangles.
         let origin = *corners.first()?;
         let nought = Vector { x: Double::default(), y: Double::default(), z: Double::default() };
@@ -83,6 +84,7 @@ fn triangle(cell: Cell) -> Cell {
     Cell { areas: [0.0, twice_area, twice_area, 0.0], ..cell }
 }
 
-fn point(v: Vector<f64>) -> Vec3 {
-    Vec3::new(v.x, v.y, v.z)
+/// The nearest point of f64.
+pub fn point(v: Vector<Double>) -> Vec3 {
+    Vec3::new(v.x.value(), v.y.value(), v.z.value())
 }
