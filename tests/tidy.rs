@@ -26,12 +26,13 @@ const FLOORS: [&[&str]; 17] = [
 ];
 
 /// Outside crates and the rooms that are their only doors.
-const DOORS: [(&str, &[&str]); 19] = [
+const DOORS: [(&str, &[&str]); 20] = [
     ("faer", &["linalg"]),
     ("sprs", &["linalg"]),
     ("nalgebra", &["linalg"]),
     ("glam", &["geometry"]),
     ("obvhs", &["geometry"]),
+    ("pulp", &["geometry"]),
     ("robust", &["geometry"]),
     ("plotters", &["report"]),
     ("dejavu", &["report"]),
