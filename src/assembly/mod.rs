@@ -6,7 +6,9 @@ mod measurement;
 mod operators;
 mod system;
 
-pub use exchange::{Exchange, ExchangeReport, Occlusion, Repair, point_factor, point_factors};
+pub use exchange::{
+    Enclosure, Exchange, ExchangeReport, Occlusion, Repair, enclose, exchange_of_pair, point_factor, point_factors,
+};
 pub use laws::Laws;
 pub use measurement::{Gather, Measurement};
 pub use operators::{Propagation, Transport};
