@@ -6,7 +6,10 @@ mod measurement;
 mod operators;
 mod system;
 
-pub use exchange::{Exchange, ExchangeReport, Occlusion, Repair, RepairMethod, point_factor, point_factors};
+pub use exchange::{
+    Enclosure, Exchange, ExchangeReport, Occlusion, Repair, RepairMethod, enclose, exchange_of_pair, point_factor,
+    point_factors,
+};
 pub use laws::Laws;
 pub use measurement::{Gather, Measurement};
 pub use operators::{Propagation, Transport};

@@ -7,6 +7,7 @@ mod check;
 mod cli;
 mod compare;
 mod defects;
+mod enclosure;
 mod equations;
 mod estimator;
 mod exchange;

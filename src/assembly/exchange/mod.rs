@@ -10,6 +10,7 @@ mod closure;
 mod cluster;
 mod contour;
 mod double;
+mod enclosure;
 mod ladder;
 mod lambert;
 mod openings;
@@ -22,11 +23,14 @@ mod rules;
 mod shadow;
 mod shape;
 mod sinks;
+mod unoccluded;
 mod visibility;
 
+pub use enclosure::{Enclosure, enclose};
 pub use point::{point_factor, point_factors};
 pub(super) use repair::repair_by;
 pub use repair::{Repair, RepairMethod};
+pub use unoccluded::exchange_of_pair;
 
 use crate::basis::Bundles;
 use crate::geometry::{Polygon, Tracer};

@@ -60,11 +60,17 @@ impl Ball {
 
     /// No number in the ball is greater.
     pub fn upper(self) -> f64 {
+        if self.is_plain() {
+            return self.high;
+        }
         ((self.low + self.radius).next_up() + self.high).next_up()
     }
 
     /// No number in the ball is less.
     pub fn lower(self) -> f64 {
+        if self.is_plain() {
+            return self.high;
+        }
         ((self.low - self.radius).next_down() + self.high).next_down()
     }
 
@@ -78,17 +84,14 @@ impl Ball {
         if self.high > 0.0 { self.lower().max(0.0) } else { (-self.upper()).max(0.0) }
     }
 
-    pub fn is_positive(self) -> bool {
-        self.lower() > 0.0
-    }
-
-    pub fn is_negative(self) -> bool {
-        self.upper() < 0.0
+    /// True if the ball is one f64.
+    fn is_plain(self) -> bool {
+        self.low == 0.0 && self.radius == 0.0
     }
 
     /// True if the ball is the number 0.
     pub fn is_zero(self) -> bool {
-        self.high == 0.0 && self.low == 0.0 && self.radius == 0.0
+        self.high == 0.0 && self.is_plain()
     }
 
     pub fn is_finite(self) -> bool {
@@ -98,7 +101,9 @@ impl Ball {
     /// Times a power of two.
     pub fn scaled(self, power: f64) -> Self {
         let (high, low, radius) = (self.high * power, self.low * power, self.radius * power);
-        let is_exact = low / power == self.low && high / power == self.high && radius / power == self.radius;
+        let is_exact = [(self.high, high), (self.low, low), (self.radius, radius)]
+            .iter()
+            .all(|(before, after)| *before == 0.0 || after.abs() > UNDERFLOW);
         Self { high, low, radius: if is_exact { radius } else { radius + f64::MIN_POSITIVE } }
     }
 
@@ -107,7 +112,8 @@ impl Ball {
         if self.is_zero() {
             return self;
         }
-        if !(self.lower() > UNDERFLOW) {
+        let is_clear_of_zero = self.lower() > UNDERFLOW;
+        if !is_clear_of_zero {
             // 0 … √upper.
             let half = 0.5 * self.upper().max(0.0).sqrt().next_up();
             return Self::around(half, half * OUTWARD + f64::MIN_POSITIVE);
@@ -124,7 +130,8 @@ impl Ball {
     /// All quotients; the whole line if the divisor's ball holds zero.
     pub fn over(self, divisor: Self) -> Self {
         let least = divisor.mignitude();
-        if !(least > 0.0) {
+        let has_inverse = least > 0.0;
+        if !has_inverse {
             return Self::ENTIRE;
         }
         // |x/y − q| = |x − q y| / |y|.
@@ -182,6 +189,9 @@ impl Mul for Ball {
         if is_plain && (product.abs() > UNDERFLOW || self.high == 0.0 || other.high == 0.0) {
             return Self { high: product, low: error, radius: size * OUTWARD };
         }
+        if self.is_zero() && other.is_finite() || other.is_zero() && self.is_finite() {
+            return Self::ZERO;
+        }
         let crossed = self.high * other.low + self.low * other.high;
         let (high, low) = fast_two_sum(product, error + crossed);
         Self { high, low, radius: (size + ROUNDING * high.abs()) * OUTWARD + f64::MIN_POSITIVE }
@@ -218,4 +228,102 @@ fn split(a: f64) -> (f64, f64) {
     let shifted = 134_217_729.0 * a;
     let high = shifted - (shifted - a);
     (high, a - high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::Stream;
+
+    /// A whole number below 2¹⁰⁰ in magnitude, and the ball of it.
+    fn whole(stream: &mut Stream) -> (i128, Ball) {
+        let bits = 1 + stream.bits() % 100;
+        let value = ((i128::from(stream.bits()) << 64 | i128::from(stream.bits())) >> (127 - bits)) * 2 + 1;
+        let high = value as f64;
+        (value, Ball { high, low: (value - high as i128) as f64, radius: 0.0 })
+    }
+
+    #[test]
+    fn sums_hold_the_exact_sum_of_whole_numbers() {
+        let mut stream = Stream::new(0x6261_6c6c, 0, 0);
+        for _ in 0..100_000 {
+            let ((a, x), (b, y)) = (whole(&mut stream), whole(&mut stream));
+            let sum = x + y;
+            // What is left of the exact sum after the midpoint is a whole number again.
+            let left = (a + b - sum.high as i128) as f64 - sum.low;
+            assert!(left.abs() <= sum.radius, "{a} + {b}: {sum:?}");
+            assert!(sum.radius <= 2e-31 * sum.high.abs() + 1e-300, "{a} + {b}: {sum:?}");
+        }
+    }
+
+    #[test]
+    fn products_hold_the_exact_product_of_whole_numbers() {
+        let mut stream = Stream::new(0x6261_6c6c, 1, 0);
+        for _ in 0..100_000 {
+            // Sixty bits each: more than an f64 holds, and the product still fits.
+            let [a, b] = [(); 2].map(|()| i128::from(stream.bits() as i64) >> 3);
+            let ball = |a: i128| Ball { high: a as f64, low: (a - a as f64 as i128) as f64, radius: 0.0 };
+            let product = ball(a) * ball(b);
+            let left = (a * b - product.high as i128) as f64 - product.low;
+            assert!(left.abs() <= product.radius, "{a} × {b}: {product:?}");
+            assert!(product.radius <= 2e-31 * product.high.abs(), "{a} × {b}: {product:?}");
+        }
+    }
+
+    #[test]
+    fn quotients_and_roots_hold_what_they_undo() {
+        let mut stream = Stream::new(0x6261_6c6c, 2, 0);
+        for _ in 0..20_000 {
+            let ((_, x), (_, y)) = (whole(&mut stream), whole(&mut stream));
+            let holds = |ball: Ball, of: Ball| (ball - of).mignitude() == 0.0;
+            let quotient = (x * y).over(y);
+            assert!(holds(quotient, x) && quotient.radius < 1e-30 * x.magnitude(), "{x:?} {y:?}: {quotient:?}");
+            let root = (x * x).sqrt();
+            let size = if x.high < 0.0 { -x } else { x };
+            assert!(holds(root, size) && root.radius < 1e-30 * x.magnitude(), "{x:?}: {root:?}");
+        }
+        // √2, √0.1 and √1e-30 (the f64) to 32 digits.
+        for (x, high, low) in [
+            (2.0, std::f64::consts::SQRT_2, -9.667293313452913e-17),
+            (0.1, 0.31622776601683794, 8.004969469767158e-19),
+            (1e-30, 1e-15, -3.6037189572868085e-32),
+        ] {
+            let left = Ball::exact(x).sqrt() - Ball { high, low, radius: 0.0 };
+            assert!(left.magnitude() < 1e-30 * high, "√{x}: {left:?}");
+        }
+    }
+
+    #[test]
+    fn radii_travel_through_every_operation() {
+        let mut stream = Stream::new(0x6261_6c6c, 3, 0);
+        for _ in 0..20_000 {
+            let mut number = || 4.0 * stream.uniform() - 2.0;
+            let (a, b) = (number(), number());
+            // Balls somewhere about the numbers, wide enough to hold them.
+            let mut ball = |value: f64| {
+                let centre = value + 0.1 * number();
+                Ball::around(centre, (centre - value).abs().next_up())
+            };
+            let (x, y) = (ball(a), ball(b));
+            let holds = |ball: Ball, of: Ball| ball.lower() <= of.upper() && of.lower() <= ball.upper();
+            let (p, q) = (Ball::exact(a), Ball::exact(b));
+            assert!(holds(x + y, p + q) && holds(x - y, p - q) && holds(x * y, p * q) && holds(x.over(y), p.over(q)));
+            if a > 0.0 {
+                assert!(holds(x.sqrt(), p.sqrt()));
+            }
+            assert!(x.lower() <= a && a <= x.upper() && x.mignitude() <= a.abs() && a.abs() <= x.magnitude());
+        }
+    }
+
+    #[test]
+    fn plain_numbers_stay_exact_and_zero_divides_nothing() {
+        let product = Ball::exact(3.0) * Ball::exact(0.25) - Ball::exact(0.75);
+        assert!(product.is_zero());
+        assert!((Ball::difference(0.7, 0.1) * Ball::ZERO).is_zero());
+        assert!(!Ball::ONE.over(Ball::around(1e-3, 1e-3)).is_finite());
+        assert!(Ball::around(0.0, 1.0).sqrt().lower() <= 0.0 && Ball::around(0.0, 1.0).sqrt().upper() >= 1.0);
+        // 1 + 1e-200 is neither of its neighbours.
+        let close = Ball::ONE + Ball::exact(1e-200);
+        assert!(close.lower() <= 1.0 && close.upper() >= 1.0f64.next_up());
+    }
 }

@@ -4,6 +4,9 @@ use super::ball::Ball;
 use super::elementary::{angle, ln, pi};
 use super::point::Point;
 
+/// Relative uncertainty of the squared length up to which an edge counts as sharp: half the digits of a ball.
+const SHARP: f64 = 1e-16;
+
 /// The segment from `start` to `start + along`.
 #[derive(Clone, Copy)]
 pub struct Edge {
@@ -24,9 +27,9 @@ impl Edge {
         Self { start: self.end, end: self.start, along: -self.along, inverse_square: self.inverse_square }
     }
 
-    /// False if the ends may be one point.
-    pub fn has_length(&self) -> bool {
-        self.inverse_square.is_finite()
+    /// True if the edge's direction is known to many digits, as that of an edge that a cut has made very short is not.
+    pub fn is_sharp(&self) -> bool {
+        self.inverse_square.radius <= SHARP * self.inverse_square.high
     }
 
     /// Length rounded to f64.
@@ -45,7 +48,8 @@ impl Edge {
         let across = across.dot(across).sqrt();
         let straight = to_start.dot(to_end);
         let turn = if less_ridge { -angle(across, -straight) } else { angle(across, straight) };
-        self.logarithm(Ball::ONE - foot, to_end) + self.logarithm(foot, to_start)
+        self.logarithm(Ball::ONE - foot, to_end)
+            + self.logarithm(foot, to_start)
             + (across * self.inverse_square * turn).scaled(2.0)
             - Ball::exact(2.0)
     }
@@ -62,7 +66,7 @@ impl Edge {
         }
         // r |ln r²| rises up to r = 1/e.
         let r = square.upper().sqrt().next_up();
-        if !(r < 0.3) {
+        if r.is_nan() || r >= 0.3 {
             return Ball::ENTIRE;
         }
         let bound = r * (2.0 * r.ln().abs()) * self.inverse_square.magnitude().sqrt();

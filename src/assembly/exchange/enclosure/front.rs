@@ -17,7 +17,7 @@ pub struct Plane<'a> {
 pub struct Front {
     /// Fewer than three: nothing.
     pub corners: Vec<Point>,
-    /// Bound of the share of the polygon's area that may be on the wrong side.
+    /// Bound of the area that may be on the wrong side.
     pub doubtful: f64,
 }
 
@@ -41,30 +41,56 @@ impl<'a> Plane<'a> {
     ///
     /// Corners whose height has no certain sign, or next to none, are taken to lie in the plane. With ε the largest of those and H the
     /// greatest height of any corner, all of the polygon between −ε and ε is at most 4ε/H of its area, for its width is a
-    /// concave function of height: that share is doubtful.
+    /// concave function of height: that much is doubtful. An edge that hardly leaves the plane crosses it at an uncertain place, but on
+    /// a line that is certain: the place is chosen, and the triangles that it may sweep up to the cut's other end are doubtful.
     pub fn front_of(&self, polygon: &[Point]) -> Front {
         let threshold = ON_PLANE * self.length;
         let heights: Vec<Ball> = polygon.iter().map(|p| self.height(*p)).collect();
-        let is_level = |h: &Ball| !(h.mignitude() > threshold);
-        let sign = |h: &Ball| if is_level(h) { 0 } else if h.high > 0.0 { 1 } else { -1 };
+        if !heights.iter().all(|h| h.is_finite()) {
+            return Front { corners: Vec::new(), doubtful: f64::INFINITY };
+        }
+        let is_level = |h: &Ball| h.mignitude() <= threshold;
+        let sign = |h: &Ball| {
+            if is_level(h) {
+                0
+            } else if h.high > 0.0 {
+                1
+            } else {
+                -1
+            }
+        };
         let doubt = heights.iter().filter(|h| is_level(h)).map(|h| if h.is_zero() { 0.0 } else { h.magnitude() });
         let doubt = doubt.fold(0.0, f64::max);
         let extent = heights.iter().map(|h| h.mignitude()).fold(0.0, f64::max);
-        let doubtful = if doubt == 0.0 { 0.0 } else { (4.01 * doubt / extent).min(1.0) };
-
+        let share = if doubt == 0.0 { 0.0 } else { (4.01 * doubt / extent).min(1.0) };
+        let mut doubtful = if share > 0.0 { 0.501 * share * area_vector(polygon).longest() } else { 0.0 };
         if !heights.iter().any(|h| sign(h) > 0) {
             return Front { corners: Vec::new(), doubtful };
         }
+
+        // Keep the corners in front and those on the cut, a crossing with the way it may be off.
         let mut corners = Vec::with_capacity(polygon.len() + 1);
+        let mut cut = Vec::new();
         for (k, (corner, h)) in polygon.iter().zip(&heights).enumerate() {
             let next = (k + 1) % polygon.len();
             if sign(h) >= 0 {
                 corners.push(*corner);
             }
+            if sign(h) == 0 {
+                cut.push((*corner, None));
+            }
             if sign(h) * sign(&heights[next]) < 0 {
                 let s = h.over(*h - heights[next]);
-                corners.push(*corner + (polygon[next] - *corner).times(s));
+                let edge = polygon[next] - *corner;
+                let crossing = *corner + edge.times(s.midpoint());
+                corners.push(crossing);
+                cut.push((crossing, Some(edge.times(Ball::exact(s.radius)))));
             }
+        }
+        for (from, step) in &cut {
+            let Some(step) = step else { continue };
+            let swept = cut.iter().map(|(to, _)| step.cross(*to - *from).longest());
+            doubtful += 0.501 * swept.fold(0.0, f64::max);
         }
         Front { corners, doubtful }
     }

@@ -31,7 +31,6 @@ use ball::Ball;
 use edge::Edge;
 use front::{Plane, area_vector};
 use point::Point;
-use std::f64::consts::PI;
 
 /// Relative width that is aimed at: four ulp.
 const WIDTH: f64 = 1e-15;
@@ -83,34 +82,35 @@ pub fn enclose(a: &Polygon, b: &Polygon) -> Enclosure {
     let (part_a, part_b) = (front_a.corners, front_b.corners);
     // No point takes in more than π of a polygon's other side.
     let area = |corners: &[Point]| 0.5 * area_vector(corners).longest();
-    let doubt = 3.15 * (area(&whole_a) * front_a.doubtful + area(&whole_b) * front_b.doubtful);
-    let most = 3.15 * area(&part_a).min(area(&part_b));
+    let doubt = 3.15 * (front_a.doubtful + front_b.doubtful);
+    let most = 3.15 * area(&whole_a).min(area(&whole_b));
 
     // Refine until the truncation is small beside the value.
     let mut value = Ball::ZERO;
     if part_a.len() >= 3 && part_b.len() >= 3 {
-        let mut tolerance = 0.1 * WIDTH * guess(&part_a, &part_b).clamp(1e-24 * most, most);
+        let mut tolerance = 0.1 * WIDTH * guess(&part_a, &part_b).max(1e-24 * most).min(most);
         for _ in 0..4 {
             value = contour(&part_a, &part_b, tolerance);
             let wanted = 0.1 * WIDTH * value.high.max(0.1 * value.radius);
-            if !(value.radius > WIDTH * value.high) || wanted >= tolerance {
+            let is_wide = value.radius > WIDTH * value.high;
+            if !is_wide || wanted >= tolerance {
                 break;
             }
             tolerance = wanted;
         }
     }
-    let value = value.widened(doubt).scaled(power.recip()).scaled(power.recip());
-    let most = (most + doubt) * power.recip() * power.recip() * (1.0 + WIDTH);
-    if !value.is_finite() {
-        return Enclosure { low: 0.0, high: most };
-    }
-    Enclosure { low: value.lower().max(0.0), high: value.upper().max(0.0).min(most) }
+    let value = if doubt > 0.0 { value.widened(doubt) } else { value };
+    let unit = power.recip();
+    let [value, most] = [value, Ball::exact(most)].map(|x| x.scaled(unit).scaled(unit));
+    let [low, high] = if value.is_finite() { [value.lower(), value.upper()] } else { [0.0, f64::INFINITY] };
+    Enclosure { low: low.max(0.0), high: high.max(0.0).min(most.upper()) }
 }
 
 /// ¼ Σ (e·f) J over all pairs of edges.
 fn contour(a: &[Point], b: &[Point], tolerance: f64) -> Ball {
     let edges = |corners: &[Point]| -> Vec<Edge> {
-        (0..corners.len()).map(|k| Edge::new(corners[k], corners[(k + 1) % corners.len()])).collect()
+        let ends = (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()]));
+        ends.filter(|(start, end)| !start.is_exactly(*end)).map(|(start, end)| Edge::new(start, end)).collect()
     };
     let (edges_a, edges_b) = (edges(a), edges(b));
     let share = 4.0 * tolerance / (a.len() * b.len()) as f64;

@@ -25,34 +25,34 @@ const SAFETY: f64 = 1e-10;
 /// Ellipses thinner than this (ρ + 1/ρ, so ρ = 1.37) are not used.
 const THINNEST: f64 = 2.1;
 
+/// Truncation below this is lost in the rounding of the moments.
+const FINEST: f64 = 1e-28;
+
 /// A panel is halved at most this often.
 const DEEPEST: usize = 120;
 
 /// J, its truncation error aimed at `tolerance`; what is reached is in the radius.
 pub fn log_integral(one: &Edge, two: &Edge, tolerance: f64) -> Ball {
     // Edges from a common corner: r² is homogeneous in (t, τ), so each triangle of the square reduces to its far side.
-    for (one, two) in [
-        (*one, *two),
-        (one.reversed(), *two),
-        (*one, two.reversed()),
-        (one.reversed(), two.reversed()),
-    ] {
+    for (one, two) in [(*one, *two), (one.reversed(), *two), (*one, two.reversed()), (one.reversed(), two.reversed())] {
         if one.start.is_exactly(two.start) {
             return (one.potential(two.end, false) + two.potential(one.end, false)).scaled(0.5) - Ball::ONE;
         }
     }
-    // Corners of the inner edge are what makes panels shrink: let it be the one whose corners keep away. An edge so short that it may be
-    // none can be the outer one only.
-    let is_one_inner = match (one.has_length(), two.has_length()) {
+    // Corners of the inner edge are what makes panels shrink: let it be the one whose corners keep away. An edge of uncertain direction
+    // had better be the outer one.
+    let is_one_inner = match (one.is_sharp(), two.is_sharp()) {
         (true, true) => clearance(one, two) >= clearance(two, one),
-        (has_length, _) => has_length,
+        (false, false) => one.length() >= two.length(),
+        (is_sharp, _) => is_sharp,
     };
     let (inner, outer) = if is_one_inner { (one, two) } else { (two, one) };
+    let tolerance = tolerance.max(FINEST);
     let mut sum = Ball::ZERO;
     let mut panels = vec![(Panel { low: Ball::ZERO, high: Ball::ONE }, 0)];
     while let Some((panel, depth)) = panels.pop() {
         let share = tolerance * panel.width().sqrt();
-        let is_last = depth == DEEPEST || !outer.has_length();
+        let is_last = depth == DEEPEST || !inner.is_sharp();
         if let Some(plan) = panel.plan(inner, outer, share).filter(|_| !is_last) {
             sum = sum + panel.integrate(inner, outer, &plan);
         } else if let Some(value) = panel.bounded(inner, outer, if is_last { f64::INFINITY } else { share }) {
@@ -123,15 +123,15 @@ impl Panel {
     /// The smallest rule whose error is within the tolerance; `None` if there is none.
     fn plan(&self, inner: &Edge, outer: &Edge, tolerance: f64) -> Option<Plan> {
         let half = 0.5 * self.width() * (1.0 + 4.0 * f64::EPSILON);
-        let length = 2.0 * half * outer.length();
+        let length = 2.0 * half * outer.along.longest();
         let ends = [self.low, self.high].map(|t| outer.start + outer.along.times(t));
         let [from, to] = ends.map(|end| (end - inner.start).rounded());
         let [from_end, to_end] = ends.map(|end| (end - inner.end).rounded());
         // What the corners themselves are uncertain by moves distances by no more.
         let doubt = 4.0 * ends.map(|end| (end - inner.start).doubt() + (end - inner.end).doubt()).iter().sum::<f64>();
         let along = inner.along.rounded();
-        let inner_length = along.length();
-        let tangent = along / inner_length;
+        let inner_length = inner.along.shortest();
+        let tangent = along.normalize();
 
         // Along the edge, and along the two rays that leave it.
         let here = [nearest(from, to, tangent), nearest(from_end, to_end, -tangent)];
@@ -149,7 +149,8 @@ impl Panel {
         let [v0, v1] = ends.map(|end| (end - inner.start).cross(inner.along));
         let slope = outer.along.cross(inner.along).longest();
         let most = 1.001 * (v0.longest() + v1.longest()) / (inner_length * inner_length);
-        let ridge = rho((v0.shortest() + v1.shortest()) / (slope * half)).map(|rho| Decay { rho, size: 4.0 * PI * most });
+        let ridge =
+            rho((v0.shortest() + v1.shortest()) / (slope * half)).map(|rho| Decay { rho, size: 4.0 * PI * most });
         // |aₖ| ≤ 2 · 2π · (η at both ends) ρ⁻ᵏ; and both the integral and the rule's sum are within 0 … 4π max η.
         let ridge_error = |rule: &Rule| {
             let bound = 13.0 * most;
@@ -219,4 +220,88 @@ fn line_distance(from: Vec3, to: Vec3, direction: Vec3) -> f64 {
     let heights = from.cross(direction).length() + to.cross(direction).length();
     let along = (to - from).dot(direction);
     heights.hypot(along) - 1e-14 * (from.length() + to.length())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::elementary::{angle, ln};
+    use super::super::point::Point;
+    use super::*;
+
+    fn edge(from: [f64; 3], to: [f64; 3]) -> Edge {
+        let point = |p: [f64; 3]| Point::new(Vec3::from_array(p), Vec3::ZERO, 1.0);
+        Edge::new(point(from), point(to))
+    }
+
+    /// P(a + 1) + P(a − 1) − 2 P(a), P(x) = ½ (x² − h²) ln(x² + h²) + 2 h x arctan(x/h) − 3/2 x²: J of unit edges side by side, one
+    /// shifted by a along and by h across.
+    fn parallel(a: f64, h: f64) -> Ball {
+        let [half, h] = [0.5, h].map(Ball::exact);
+        let antiderivative = |x: f64| {
+            let size = Ball::exact(x.abs());
+            let square = size * size;
+            let r_square = square + h * h;
+            if r_square.is_zero() {
+                return Ball::ZERO;
+            }
+            half * (square - h * h) * ln(r_square) + Ball::exact(2.0) * h * size * angle(size, h)
+                - Ball::exact(1.5) * square
+        };
+        antiderivative(a + 1.0) + antiderivative(a - 1.0) - Ball::exact(2.0) * antiderivative(a)
+    }
+
+    /// Aimed at, and reached to a few times.
+    const TOLERANCE: f64 = 1e-24;
+
+    #[test]
+    fn edges_side_by_side_match_the_closed_form() {
+        // Far, next to each other, overlapping; apart, close, all but and wholly collinear. All dyadic.
+        for a in [8.0, 2.0, 1.0 + f64::powi(2.0, -30), 1.0, 0.75, 0.25, f64::powi(2.0, -40), 0.0, -0.5] {
+            for h in [2.0, 0.25, f64::powi(2.0, -10), f64::powi(2.0, -40), f64::powi(2.0, -60), 0.0] {
+                let one = edge([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
+                let two = edge([a, h, 0.0], [a + 1.0, h, 0.0]);
+                let expected = parallel(a, h);
+                for (one, two) in [(one, two), (two, one), (one.reversed(), two), (one, two.reversed())] {
+                    let left = log_integral(&one, &two, TOLERANCE) - expected;
+                    assert!(left.mignitude() == 0.0, "shifted by {a}, {h}: {left:?}");
+                    assert!(left.radius < 20.0 * TOLERANCE, "shifted by {a}, {h}: {left:?}");
+                }
+            }
+        }
+    }
+
+    /// A cross of skew edges, cut at the crossing into corners, whose closed form is another route.
+    #[test]
+    fn crossing_edges_are_the_sum_of_their_corners() {
+        for (x, y) in [([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), ([3.0, 1.0, 0.5], [-1.0, 2.0, 0.25])] {
+            let times = |v: [f64; 3], t: f64| v.map(|v| v * t);
+            let (one, two) = (edge(times(x, -1.0), times(x, 3.0)), edge(times(y, -0.5), times(y, 1.5)));
+            let mut sum = Ball::ZERO;
+            for (s, share) in [(-1.0, 0.25), (3.0, 0.75)] {
+                for (t, other) in [(-0.5, 0.25), (1.5, 0.75)] {
+                    let corner = log_integral(&edge([0.0; 3], times(x, s)), &edge([0.0; 3], times(y, t)), TOLERANCE);
+                    sum = sum + Ball::exact(share * other) * corner;
+                }
+            }
+            let left = log_integral(&one, &two, TOLERANCE) - sum;
+            assert!(left.mignitude() == 0.0 && left.radius < 20.0 * TOLERANCE, "{left:?}");
+        }
+    }
+
+    /// Skew edges at any distance: the bounds of halves, added, meet those of the whole, whichever edge is halved.
+    #[test]
+    fn halves_add_up_to_the_whole() {
+        for exponent in [0, -3, -8, -20, -35, -52] {
+            let h = f64::powi(2.0, exponent);
+            for slope in [1.0, 0.25, f64::powi(2.0, -20)] {
+                let (from, to) = ([-1.0, -slope, h], [0.5, 0.5 * slope, h]);
+                let middle = [0, 1, 2].map(|k| 0.5 * (from[k] + to[k]));
+                let one = edge([-0.75, 0.0, 0.0], [1.25, 0.0, 0.0]);
+                let whole = log_integral(&one, &edge(from, to), TOLERANCE);
+                let parts = [edge(from, middle), edge(middle, to)].map(|part| log_integral(&one, &part, TOLERANCE));
+                let left = (parts[0] + parts[1]).scaled(0.5) - whole;
+                assert!(left.mignitude() == 0.0 && left.radius < 40.0 * TOLERANCE, "{h} {slope}: {left:?}");
+            }
+        }
+    }
 }
