@@ -4,10 +4,12 @@ mod exchange;
 mod laws;
 mod measurement;
 mod operators;
+mod orbits;
 mod system;
 
 pub use exchange::{Exchange, ExchangeReport, Occlusion, Repair, point_factor, point_factors};
 pub use laws::Laws;
 pub use measurement::{Gather, Measurement};
 pub use operators::{Propagation, Transport};
-pub use system::{AssemblyError, System, assemble, assemble_watched};
+pub use orbits::Orbits;
+pub use system::{AssemblyError, System, assemble, assemble_orbits, assemble_watched};

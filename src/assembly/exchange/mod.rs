@@ -6,6 +6,7 @@
 mod clip;
 mod closure;
 mod contour;
+mod folded;
 mod lambert;
 mod point;
 mod quadrature;
@@ -15,6 +16,7 @@ mod sinks;
 mod visibility;
 
 pub use closure::Repair;
+pub(super) use folded::compute as folded;
 pub use point::{point_factor, point_factors};
 
 use crate::basis::{Bundles, Patch};
