@@ -4,6 +4,7 @@ mod exchange;
 mod laws;
 mod measurement;
 mod operators;
+mod orbits;
 mod system;
 
 pub use exchange::{
@@ -13,4 +14,5 @@ pub use exchange::{
 pub use laws::Laws;
 pub use measurement::{Gather, Measurement};
 pub use operators::{Propagation, Transport};
-pub use system::{AssemblyError, System, assemble, assemble_watched};
+pub use orbits::Orbits;
+pub use system::{AssemblyError, System, assemble, assemble_orbits, assemble_watched};

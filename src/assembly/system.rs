@@ -1,7 +1,7 @@
 //! The assembled equation of one scene at one resolution.
 
 use super::exchange::{self, Exchange, ExchangeReport, RepairMethod};
-use super::{Laws, Propagation, Transport};
+use super::{Laws, Orbits, Propagation, Transport};
 use crate::basis::{Bundles, Element};
 use crate::linalg::{Block, Diagonal, Equation, LinearOperator, Matrix, SelfAdjoint};
 use crate::scene::Scene;
@@ -54,7 +54,42 @@ pub fn assemble_watched(
     settings: Exchange,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<System, AssemblyError> {
-    // Look up what every bundle reflects and emits.
+    let (albedo, emission) = materials(scene, bundles)?;
+    let computed = exchange::compute(scene, bundles, settings, progress);
+    let computed = computed.map_err(|exchange::Overfull { bundle, fullness }| {
+        let patch = bundles.patch(bundles.element_of(bundle).0);
+        let (surface, position) = patch.map_or((String::new(), [f64::NAN; 3]), |patch| {
+            (scene.surface_of(patch.facet).name.clone(), patch.polygon.centroid().to_array())
+        });
+        AssemblyError::Overlap { surface, position, fullness }
+    })?;
+    Ok(System::new(albedo, emission, bundles.etendue().into(), computed))
+}
+
+/// [`assemble`] on orbits: an unknown for every orbit of bundles, and only the exchange of surfaces i and j where `wanted(i, j)` or
+/// `wanted(j, i)`. Also the absolute error of the sum of every row of T, as estimated, m² sr.
+///
+/// Nothing is counted that leaves the scene, and closure is not repaired. Cost: one row of pairs an orbit.
+///
+/// # Errors
+/// A surface that the basis cannot represent.
+pub fn assemble_orbits(
+    scene: &Scene,
+    bundles: &Bundles,
+    orbits: &Orbits,
+    wanted: &(dyn Fn(usize, usize) -> bool + Sync),
+    settings: Exchange,
+) -> Result<(System, Vec<f64>), AssemblyError> {
+    let (albedo, emission) = materials(scene, bundles)?;
+    let (computed, error) = exchange::folded(scene, bundles, orbits, wanted, settings);
+    let n = orbits.n_orbits();
+    let fold = |block: &Block| Block::from_fn(n, block.n_columns(), |i, band| block.get(orbits.members(i)[0], band));
+    let etendue = (0..n).map(|i| orbits.members(i).iter().map(|k| bundles.etendue()[*k]).sum()).collect();
+    Ok((System::new(fold(&albedo), fold(&emission), etendue, computed), error))
+}
+
+/// Albedo and emission of every bundle, n × bands each.
+fn materials(scene: &Scene, bundles: &Bundles) -> Result<(Block, Block), AssemblyError> {
     let (n, n_bands) = (bundles.n_bundles(), scene.n_bands());
     let mut albedo = Block::zeros(n, n_bands);
     let mut emission = Block::zeros(n, n_bands);
@@ -72,38 +107,29 @@ pub fn assemble_watched(
             }
         }
     }
-
-    let computed = exchange::compute(scene, bundles, settings, progress);
-    let exchange::Assembled { exchange, error, sinks, repair_scale, report } =
-        computed.map_err(|exchange::Overfull { bundle, fullness }| {
-            let patch = bundles.patch(bundles.element_of(bundle).0);
-            let (surface, position) = patch.map_or((String::new(), [f64::NAN; 3]), |patch| {
-                (scene.surface_of(patch.facet).name.clone(), patch.polygon.centroid().to_array())
-            });
-            AssemblyError::Overlap { surface, position, fullness }
-        })?;
-    let exchange = Arc::new(exchange);
-    let exchange_error = Arc::new(error);
-    let etendue: Arc<[f64]> = bundles.etendue().into();
-    let root = Block::from_fn(n, n_bands, |i, band| albedo.get(i, band).sqrt());
-    let propagation = Propagation::new(exchange.clone(), etendue.clone());
-    let transport = Transport::new(Diagonal::new(albedo), propagation);
-    let scattering_root = Diagonal::new(root);
-    Ok(System {
-        exchange,
-        exchange_error,
-        etendue,
-        sinks,
-        emission,
-        transport,
-        scattering_root,
-        repair_scale,
-        is_self_adjoint: true,
-        report,
-    })
+    Ok((albedo, emission))
 }
 
 impl System {
+    fn new(albedo: Block, emission: Block, etendue: Arc<[f64]>, computed: exchange::Assembled) -> Self {
+        let exchange::Assembled { exchange, error, sinks, repair_scale, report } = computed;
+        let exchange = Arc::new(exchange);
+        let root = Block::from_fn(albedo.n_rows(), albedo.n_columns(), |i, band| albedo.get(i, band).sqrt());
+        let propagation = Propagation::new(exchange.clone(), etendue.clone());
+        Self {
+            exchange,
+            exchange_error: Arc::new(error),
+            etendue,
+            sinks,
+            emission,
+            transport: Transport::new(Diagonal::new(albedo), propagation),
+            scattering_root: Diagonal::new(root),
+            repair_scale,
+            is_self_adjoint: true,
+            report,
+        }
+    }
+
     /// Bytes that assembly may take for n bundles, none of them hidden from another: T and its errors in full, the list of the upper
     /// triangle at 24 an entry and a third more for growing it, and the points of the quadrature, some 6000 a patch.
     pub fn memory_estimate(n_bundles: usize) -> u64 {

@@ -11,6 +11,7 @@ mod cluster;
 mod contour;
 mod double;
 mod enclosure;
+mod folded;
 mod ladder;
 mod lambert;
 mod openings;
@@ -27,6 +28,7 @@ mod unoccluded;
 mod visibility;
 
 pub use enclosure::{Enclosure, enclose};
+pub(super) use folded::compute as folded;
 pub use point::{point_factor, point_factors};
 pub(super) use repair::repair_by;
 pub use repair::{Repair, RepairMethod};
@@ -322,7 +324,7 @@ impl Parts<'_> {
         let key = mix(&[settings.seed, 0, i as u64, j as u64]);
         let ends = [self.ends[i], self.ends[j]];
         let scene = (self.occluders, self.bodies);
-        visibility::between(desk, scene, candidates, ends, settings.occlusion, settings.visibility_rays, key)
+        visibility::between(desk, scene, Some(candidates), ends, settings.occlusion, settings.visibility_rays, key)
     }
 }
 

@@ -35,7 +35,7 @@ impl<'a> End<'a> {
     }
 }
 
-/// Classifies the pair, and where that does not settle it integrates what is blocked, or casts `n_rays` between points spread
+/// Classifies the pair among these candidates, `None` standing for all, and where that does not settle it integrates what is blocked, or casts `n_rays` between points spread
 /// evenly over both.
 ///
 /// The share is Σ k V / Σ k, k the kernel cosθ cosθ'/r² of each ray and V whether it gets through. Its variance is that of the
@@ -43,13 +43,18 @@ impl<'a> End<'a> {
 pub fn between(
     desk: &mut Desk,
     (occluders, bodies): (&Tracer, &Bodies),
-    candidates: &[u32],
+    candidates: Option<&[u32]>,
     [a, b]: [End; 2],
     occlusion: Occlusion,
     n_rays: usize,
     key: u64,
 ) -> Visibility {
-    let handles = match Shaft::among(occluders, candidates, (a.polygon, a.facet), (b.polygon, b.facet)) {
+    let (one, other) = ((a.polygon, a.facet), (b.polygon, b.facet));
+    let shaft = match candidates {
+        None => Shaft::between(occluders, one, other),
+        Some(candidates) => Shaft::among(occluders, candidates, one, other),
+    };
+    let handles = match shaft {
         Shaft::Clear => return Visibility::Full,
         Shaft::Blocked => return Visibility::None,
         Shaft::Undecided(handles) => handles,

@@ -20,7 +20,7 @@ pub fn closed_box(albedo: [f64; 6], exitance: [f64; 6]) -> Result<Model, CaseErr
     for (f, face) in cube::faces(1.0).iter().enumerate() {
         let cells =
             (0..CELLS * CELLS).map(|k| face.cell(span(k / CELLS), span(k % CELLS))).collect::<Result<_, _>>()?;
-        bodies.push(Body { polygons: cells, albedo: albedo[f], exitance: exitance[f] });
+        bodies.push(Body { polygons: cells, albedo: albedo[f], exitance: exitance[f], exchanges: true });
     }
     Model::new(bodies, Walls::Closed, EXACT)
 }

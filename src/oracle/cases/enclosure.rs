@@ -55,12 +55,12 @@ fn bodies(geometry: &Geometry) -> Result<Vec<Body>, CaseError> {
     if albedo.len() != polygons.len() || exitance.len() != polygons.len() {
         return Err(CaseError::Geometry { field: "rho".to_string(), problem: "and 'E' must have one number a patch" });
     }
-    let body = |((polygon, albedo), exitance)| Body { polygons: vec![polygon], albedo, exitance };
+    let body = |((polygon, albedo), exitance)| Body { polygons: vec![polygon], albedo, exitance, exchanges: true };
     Ok(polygons.into_iter().zip(albedo).zip(exitance).map(body).collect())
 }
 
 /// Eigenvalues of diag(albedo) F, largest first: those of the symmetric √albedo T √albedo / (π √(A A')).
-fn spectrum(model: &Model, albedo: &[f64]) -> Vec<f64> {
+pub(super) fn spectrum(model: &Model, albedo: &[f64]) -> Vec<f64> {
     let (flows, areas) = (model.flows(), model.areas());
     let entry = |i: usize, j: usize| flows[i][j] / PI * (albedo[i] * albedo[j] / (areas[i] * areas[j])).sqrt();
     symmetric_eigenvalues(&Dense::from_fn(albedo.len(), albedo.len(), entry))
@@ -164,7 +164,7 @@ fn transport(model: &Model, i: usize, j: usize) -> f64 {
 }
 
 /// (I − A) x = right.
-fn solve(n: usize, entry: impl Fn(usize, usize) -> f64, right: &[f64]) -> Result<Vec<f64>, CaseError> {
+pub(super) fn solve(n: usize, entry: impl Fn(usize, usize) -> f64, right: &[f64]) -> Result<Vec<f64>, CaseError> {
     let matrix = Dense::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) - entry(i, j));
     let mut x = Block::from_fn(n, 1, |i, _| right[i]);
     let factor = LuFactor::new(&matrix).map_err(|source| SolveError::Factor { method: "lu", band: 0, source })?;

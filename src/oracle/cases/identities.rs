@@ -54,7 +54,7 @@ fn corner_box(isothermal: bool) -> Result<Model, CaseError> {
     let body = |surface: &crate::scene::Surface| {
         let albedo = surface.front.lambertian().map_or(0.0, |albedos| albedos[0]);
         let exitance = if isothermal { 1.0 - albedo } else { PI * surface.emission[0] };
-        Body { polygons: surface.polygons.clone(), albedo, exitance }
+        Body { polygons: surface.polygons.clone(), albedo, exitance, exchanges: true }
     };
     Model::new(scene.surfaces().iter().map(body).collect(), Walls::Closed, ROUGH)
 }
@@ -133,7 +133,7 @@ fn plates(n: usize) -> Result<Model, CaseError> {
     };
     let plate = |z: f64| {
         let polygons = (0..n * n).map(|k| cell(k / n, k % n, z)).collect::<Result<_, _>>()?;
-        Ok::<_, CaseError>(Body { polygons, albedo: 0.5, exitance: 1.0 })
+        Ok::<_, CaseError>(Body { polygons, albedo: 0.5, exitance: 1.0, exchanges: true })
     };
     Model::new(vec![plate(0.0)?, plate(0.375)?], Walls::Open, EXACT)
 }

@@ -1,7 +1,23 @@
-//! Where a sequence of finer and finer polygons is heading.
+//! Where a sequence of finer and finer polygons is heading, and how far from there it still is.
+//!
+//! What is computed at step h runs as v(h) = v + Σ cₖ h^pₖ + noise, with powers known from the kind of approximation. Through the last values one
+//! interpolant of the first powers is laid (Richardson's extrapolation), for every number of them. What an extrapolation changes when its
+//! levels move one coarser is an error it has had; so is what one power less changes, and what doubt about the powers changes.
 
 use super::error::CaseError;
 use crate::linalg::{Block, Dense, LuFactor};
+
+/// Polygons inscribed into smooth curves, sums of constants over equal cells, central differences.
+pub const EVEN: &[f64] = &[2.0, 4.0, 6.0, 8.0, 10.0];
+
+/// As [`EVEN`], where values at points see the cells around them, or neighbours meet at an angle that closes as they shrink.
+pub const EVERY: &[f64] = &[2.0, 3.0, 4.0, 5.0, 6.0];
+
+/// Where planes of shrinking facets begin to cut what they see: from there on it grows with the power 5/2, and steps h in that sum to h^{7/2}.
+pub const HORIZON: &[f64] = &[2.0, 3.5, 4.0, 4.5, 5.5];
+
+/// Ends that recede.
+pub const LINEAR: &[f64] = &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// A limit and the error that is estimated for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,103 +26,160 @@ pub struct Limit {
     pub error: f64,
 }
 
-/// The estimate is the last change of the extrapolation, which measures the error before it; ten times that leaves room for sequences
-/// that are not quite even.
-const SAFETY: f64 = 10.0;
+/// The change that coarser levels make is at least the error that is left times (ratio of steps)^power − 1, some one half: twice that, and as
+/// much again for sequences that are not quite even.
+const SAFETY: f64 = 4.0;
 
-/// One order more improves an extrapolation by no more than this: a change that is smaller still is luck.
-const SUDDEN: f64 = 0.1;
+/// One power more improves an extrapolation by no more than this: a change that is smaller still is luck.
+const SUDDEN: f64 = 0.05;
 
-/// Extrapolates values at these steps to step 0 by the polynomial in step^power through all of them (Richardson; Neville's scheme).
+/// One level more improves an estimate by no more than this: steps in the ratio 2/3 and five even powers.
+const FASTEST: f64 = 50.0;
+
+/// Fewer levels may agree by luck.
+const FEWEST: usize = 5;
+
+/// How values are refined: the numbers of levels in turn (the step is 1 / level), the powers of the step that the error has, and the
+/// error at which it ends.
+#[derive(Clone, Copy, Debug)]
+pub struct Refinement<'a> {
+    pub levels: &'a [usize],
+    pub powers: &'a [f64],
+    pub enough: f64,
+}
+
+/// Extrapolates values at these steps, falling, to step 0. `noise` is the absolute error of the values themselves.
 ///
-/// The estimate is the largest of the last change, times ten, of a share of the change before, and of the difference to the polynomial
-/// that has a linear term in place of the highest power; plus the given error of the values themselves, amplified as the scheme amplifies it. One value is its
-/// own limit, of unknown error.
-pub fn extrapolate(steps: &[f64], values: &[f64], power: f64, value_error: f64) -> Limit {
-    let n = values.len();
-    if n < 2 {
-        return Limit { value: values.first().copied().unwrap_or(f64::NAN), error: f64::INFINITY };
+/// One value is its own limit, of unknown error. Cost O(levels⁴).
+pub fn extrapolate(steps: &[f64], values: &[f64], powers: &[f64], noise: f64) -> Limit {
+    let mut limit = best_of(&steps[..1.min(steps.len())], &values[..1.min(values.len())], powers, noise);
+    for n in 2..=values.len() {
+        let next = best_of(&steps[..n], &values[..n], powers, noise);
+        // What a level changes is an error that the one before has had, whatever it estimated; and it does not help more than it can.
+        let error = match n > 3 {
+            true => next.error.max((next.value - limit.value).abs()).max(limit.error / FASTEST),
+            false => next.error,
+        };
+        limit = Limit { error, ..next };
     }
-    let (best, noise) = neville(steps, values, power, value_error);
-    let value = best[n - 1];
-    let change = |k: usize| (best[k] - best[k - 1]).abs();
-    let last = change(n - 1).max(if n > 2 { SUDDEN * change(n - 2) } else { 0.0 });
-    let odd = if power == 1.0 || n < 3 { 0.0 } else { (value - with_linear_term(steps, values, power)).abs() };
-    Limit { value, error: (SAFETY * last).max(odd) + noise }
+    limit
 }
 
-/// The limit of the interpolant with the powers 0, 1, power, 2 power, … of the step; NaN where the steps do not determine it.
-fn with_linear_term(steps: &[f64], values: &[f64], power: f64) -> f64 {
+/// The extrapolation of the least estimated error among all numbers of powers.
+fn best_of(steps: &[f64], values: &[f64], powers: &[f64], noise: f64) -> Limit {
     let n = values.len();
-    let exponent = |j: usize| if j < 2 { j as f64 } else { power * (j - 1) as f64 };
-    let matrix = Dense::from_fn(n, n, |i, j| (steps[i] / steps[0]).powf(exponent(j)));
-    let mut x = Block::from_fn(n, 1, |i, _| values[i]);
-    match LuFactor::new(&matrix) {
-        Ok(factor) => {
-            factor.solve(&mut x);
-            x.get(0, 0)
+    let last = values.last().copied().unwrap_or(f64::NAN);
+    let mut best = Limit { value: last, error: f64::INFINITY };
+    for n_powers in 1..n.min(powers.len() + 1) {
+        let through = |end: usize, powers: &[f64]| {
+            let first = end - powers.len() - 1;
+            interpolated(&steps[first..end], &values[first..end], powers)
+        };
+        let (value, amplified) = through(n, &powers[..n_powers]);
+        let less = (value - through(n, &powers[..n_powers - 1]).0).abs();
+        // A power that is doubted takes the place of the highest.
+        let mut doubted = powers[..n_powers].to_vec();
+        doubted[n_powers - 1] = if n_powers == 1 { powers[0] } else { powers[n_powers - 2] + 0.5 };
+        let doubt = (value - through(n, &doubted).0).abs();
+        let change = match n > n_powers + 1 {
+            true => (value - through(n - 1, &powers[..n_powers]).0).abs().max(SUDDEN * less).max(doubt),
+            // No level is left to doubt it with.
+            false => less,
+        };
+        let error = SAFETY * change + amplified * noise;
+        if error < best.error {
+            best = Limit { value, error };
         }
-        Err(_) => f64::NAN,
     }
+    best
 }
 
-/// The extrapolations through the last 1, 2, … n values, and the noise of the last of them.
-fn neville(steps: &[f64], values: &[f64], power: f64, value_error: f64) -> (Vec<f64>, f64) {
-    let x: Vec<f64> = steps.iter().map(|step| step.powf(power)).collect();
+/// The limit of the interpolant with the powers 0 and these, and the sum of the magnitudes of the values' weights in it; NaN where the steps
+/// do not determine it.
+fn interpolated(steps: &[f64], values: &[f64], powers: &[f64]) -> (f64, f64) {
     let n = values.len();
-    let mut column = values.to_vec();
-    let mut noise = vec![value_error; n];
-    let mut best = vec![column[n - 1]];
-    for k in 1..n {
-        for i in 0..n - k {
-            let share = x[i + k] / (x[i] - x[i + k]);
-            column[i] = column[i + 1] + share * (column[i + 1] - column[i]);
-            noise[i] = (1.0 + share.abs()) * noise[i + 1] + share.abs() * noise[i];
-        }
-        best.push(column[n - 1 - k]);
-    }
-    (best, noise[0])
+    // The weights solve Σᵢ wᵢ hᵢ^p = [p = 0].
+    let power = |k: usize| if k == 0 { 0.0 } else { powers[k - 1] };
+    let matrix = Dense::from_fn(n, n, |k, i| (steps[i] / steps[0]).powf(power(k)));
+    let mut weights = Block::from_fn(n, 1, |k, _| if k == 0 { 1.0 } else { 0.0 });
+    let Ok(factor) = LuFactor::new(&matrix) else { return (f64::NAN, f64::NAN) };
+    factor.solve(&mut weights);
+    // Sum differences to the last value: weights of both signs then cost no digits of it.
+    let last = values[n - 1];
+    let sum: f64 = weights.column(0).iter().zip(values).map(|(w, v)| w * (v - last)).sum();
+    (last + sum, weights.column(0).iter().map(|w| w.abs()).sum())
 }
 
-/// Computes lists of values at finer and finer resolutions, and extrapolates each of them: `compute(n)` at every n of `levels`, the step
-/// being 1/n.
+/// Computes lists of values at finer and finer levels, each list with the absolute error of its values, and extrapolates each of them, until
+/// all of their errors are small enough or levels are at their end.
 ///
 /// # Errors
 /// What `compute` returns.
 pub fn refine(
-    levels: &[usize],
-    power: f64,
+    refinement: Refinement,
     mut compute: impl FnMut(usize) -> Result<(Vec<f64>, f64), CaseError>,
 ) -> Result<Vec<Limit>, CaseError> {
-    let mut table: Vec<Vec<f64>> = Vec::new();
-    let mut value_error: f64 = 0.0;
-    for n in levels {
-        let (values, error) = compute(*n)?;
-        value_error = value_error.max(error);
+    let Refinement { levels, powers, enough } = refinement;
+    let (mut steps, mut table): (Vec<f64>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
+    let mut noise: f64 = 0.0;
+    let mut limits = Vec::new();
+    for level in levels {
+        let (values, error) = compute(*level)?;
+        noise = noise.max(error);
+        steps.push(1.0 / *level as f64);
         table.push(values);
+        let limit = |k: usize| {
+            let column: Vec<f64> = table.iter().map(|row| row[k]).collect();
+            let rounding = 4.0 * f64::EPSILON * column.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+            extrapolate(&steps, &column, powers, noise.max(rounding))
+        };
+        limits = (0..table[0].len()).map(limit).collect();
+        // A few levels say too little to end at.
+        if table.len() >= FEWEST && limits.iter().all(|limit: &Limit| limit.error <= enough) {
+            break;
+        }
     }
-    let steps: Vec<f64> = levels.iter().map(|n| 1.0 / *n as f64).collect();
-    let n_values = table.first().map_or(0, Vec::len);
-    let limit = |k: usize| {
-        let column: Vec<f64> = table.iter().map(|row| row[k]).collect();
-        extrapolate(&steps, &column, power, value_error * column[column.len() - 1].abs())
-    };
-    Ok((0..n_values).map(limit).collect())
+    Ok(limits)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const STEPS: [f64; 6] = [1.0, 0.5, 1.0 / 3.0, 0.25, 1.0 / 6.0, 0.125];
+
     #[test]
-    fn a_polynomial_in_the_step_is_extrapolated_exactly_and_a_rough_one_within_its_estimate() {
-        let steps = [1.0, 0.5, 0.25, 0.125];
-        let smooth = steps.map(|h: f64| 3.0 + h.powi(2) - 2.0 * h.powi(4));
-        let limit = extrapolate(&steps, &smooth, 2.0, 0.0);
-        // Rounding of values near 3, amplified a few times.
-        assert!((limit.value - 3.0).abs() < 1e-14, "{limit:?}");
-        let rough = steps.map(|h: f64| 3.0 + h.powf(1.5));
-        let limit = extrapolate(&steps, &rough, 2.0, 0.0);
-        assert!((limit.value - 3.0).abs() < limit.error && limit.error < 0.1, "{limit:?}");
+    fn sums_of_the_known_powers_are_extrapolated_exactly() {
+        let smooth = STEPS.map(|h: f64| 3.0 + h.powi(2) - 2.0 * h.powi(4));
+        let limit = extrapolate(&STEPS, &smooth, EVEN, 1e-15);
+        // Rounding of values near 3, amplified some ten times.
+        assert!((limit.value - 3.0).abs() < 1e-13 && limit.error < 1e-10, "{limit:?}");
+    }
+
+    /// Errors with powers that were not foreseen, and with other coefficients: the estimate contains every one of them.
+    #[test]
+    fn estimates_contain_the_error_of_other_powers_too() {
+        for powers in [EVEN, EVERY, HORIZON] {
+            for (a, b, p, q) in
+                [(1.0, 0.3, 2.0, 3.0), (1.0, -2.0, 2.0, 3.5), (0.5, 1.0, 1.5, 2.5), (1.0, 1.0, 1.8, 4.0)]
+            {
+                let rough = STEPS.map(|h: f64| 3.0 + a * h.powf(p) + b * h.powf(q));
+                let limit = extrapolate(&STEPS, &rough, powers, 0.0);
+                assert!((limit.value - 3.0).abs() <= limit.error, "{powers:?} {p} {q}: {limit:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn one_value_has_no_known_error_and_refinement_ends_when_it_is_enough() {
+        assert_eq!(extrapolate(&[1.0], &[2.0], EVEN, 0.0).error, f64::INFINITY);
+        let mut n_levels = 0;
+        let refinement = Refinement { levels: &[1, 2, 3, 4, 6, 8, 12], powers: EVEN, enough: 1e-3 };
+        let limits = refine(refinement, |n| {
+            n_levels += 1;
+            Ok((vec![1.0 + 1.0 / (n * n) as f64], 0.0))
+        });
+        assert!(limits.is_ok_and(|limits| (limits[0].value - 1.0).abs() < 1e-12));
+        assert_eq!(n_levels, FEWEST);
     }
 }

@@ -19,6 +19,8 @@ mod reader;
 mod revolution;
 mod round;
 mod runner;
+mod shells;
+mod symmetry;
 mod value;
 
 pub use answer::{Outcome, Verdict};

@@ -3,9 +3,9 @@
 //! Cases speak of radiosity B = π L, exitance E and irradiance H, one number a surface; the system of bundles.
 
 use super::error::CaseError;
-use crate::assembly::{Exchange, Occlusion, System, assemble, point_factors};
+use crate::assembly::{Exchange, Occlusion, Orbits, System, assemble, assemble_orbits, point_factors};
 use crate::basis::{Bundles, Resolution};
-use crate::geometry::{Polygon, Vec3};
+use crate::geometry::{Affine3, Polygon, Vec3};
 use crate::linalg::{Block, LinearOperator};
 use crate::scattering::Lambert;
 use crate::scene::{Scene, SceneDescription, Surface};
@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// No edge is longer: every polygon is one patch (a fan of triangles where it has five corners or more).
-const WHOLE: f64 = 1e300;
+pub const WHOLE: f64 = 1e300;
 
 /// Absolute error asked for of the form factors of partly visible pairs, where polygons are the geometry itself.
 pub const EXACT: f64 = 1e-13;
@@ -26,6 +26,15 @@ pub struct Body {
     pub albedo: f64,
     /// Exitance E that the front emits, W m⁻².
     pub exitance: f64,
+    /// False where it only stands in the way.
+    pub exchanges: bool,
+}
+
+/// Bodies, and isometries that may map them onto themselves: what is the same all around is computed once.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    pub bodies: Vec<Body>,
+    pub symmetries: Vec<Affine3>,
 }
 
 /// A point of a surface where radiosity is asked for.
@@ -36,20 +45,29 @@ pub struct Probe {
     pub normal: Vec3,
 }
 
-/// A scene, cut and assembled.
+/// A scene, cut and assembled. Its unknowns are bundles, or orbits of them.
 pub struct Model {
     scene: Scene,
     bundles: Bundles,
     pub system: System,
-    /// Surface of every bundle.
+    /// Unknown of every bundle.
+    unknown_of: Vec<Option<usize>>,
+    /// Surface of every unknown.
     surface_of: Vec<usize>,
     areas: Vec<f64>,
+    /// Absolute error of the sum of a row of form factors, the worst unknown's; `None` where it was not summed.
+    row_error: Option<f64>,
 }
 
 impl Body {
     /// Black and cold: what form factors need.
     pub fn black(polygons: Vec<Polygon>) -> Self {
-        Self { polygons, albedo: 0.0, exitance: 0.0 }
+        Self { polygons, albedo: 0.0, exitance: 0.0, exchanges: true }
+    }
+
+    /// What only stands in the way of others.
+    pub fn occluder(polygons: Vec<Polygon>) -> Self {
+        Self { exchanges: false, ..Self::black(polygons) }
     }
 }
 
@@ -72,41 +90,77 @@ fn settings(walls: Walls, occluded: f64) -> Exchange {
     }
 }
 
+/// The scene of some bodies, and its bundles. A scene must emit: where no body does, the first one emits 1.
+fn cut(mut bodies: Vec<Body>, patch_size: f64) -> Result<(Scene, Bundles), CaseError> {
+    if bodies.iter().all(|body| body.exitance == 0.0)
+        && let Some(first) = bodies.first_mut()
+    {
+        first.exitance = 1.0;
+    }
+    let surfaces = bodies.into_iter().enumerate().map(|(k, body)| Surface {
+        name: format!("surface-{k}"),
+        polygons: body.polygons,
+        front: Arc::new(Lambert::grey(body.albedo, 1)),
+        back: None,
+        emission: vec![body.exitance / PI],
+        tessellation: None,
+    });
+    let description = SceneDescription {
+        name: "case".to_string(),
+        bands: vec!["grey".to_string()],
+        surfaces: surfaces.collect(),
+        camera: None,
+    };
+    let scene = Scene::new(description)?;
+    let bundles = Bundles::new(&scene, Resolution { patch_size, n_directions: 1 })?;
+    Ok((scene, bundles))
+}
+
+fn surface_of(scene: &Scene, bundles: &Bundles, bundle: usize) -> usize {
+    let patch = bundles.patch(bundles.element_of(bundle).0);
+    patch.map_or(0, |patch| scene.facets()[patch.facet].surface)
+}
+
 impl Model {
-    /// Builds the scene, cuts it and assembles it, form factors of partly visible pairs to the absolute error `occluded`. A scene must emit: where no body does, the first one emits 1.
+    /// Builds the scene, cuts it and assembles it in full, form factors of partly visible pairs to the absolute error `occluded`.
     ///
     /// # Errors
     /// What scenes, bases and assembly refuse.
-    pub fn new(mut bodies: Vec<Body>, walls: Walls, occluded: f64) -> Result<Self, CaseError> {
-        if bodies.iter().all(|body| body.exitance == 0.0)
-            && let Some(first) = bodies.first_mut()
-        {
-            first.exitance = 1.0;
-        }
-        let surfaces = bodies.into_iter().enumerate().map(|(k, body)| Surface {
-            name: format!("surface-{k}"),
-            polygons: body.polygons,
-            front: Arc::new(Lambert::grey(body.albedo, 1)),
-            back: None,
-            emission: vec![body.exitance / PI],
-            tessellation: None,
-        });
-        let description = SceneDescription {
-            name: "case".to_string(),
-            bands: vec!["grey".to_string()],
-            surfaces: surfaces.collect(),
-            camera: None,
-        };
-        let scene = Scene::new(description)?;
-        let bundles = Bundles::new(&scene, Resolution { patch_size: WHOLE, n_directions: 1 })?;
+    pub fn new(bodies: Vec<Body>, walls: Walls, occluded: f64) -> Result<Self, CaseError> {
+        let (scene, bundles) = cut(bodies, WHOLE)?;
         let system = assemble(&scene, &bundles, settings(walls, occluded))?;
-        let surface = |bundle| {
-            let patch = bundles.patch(bundles.element_of(bundle).0);
-            patch.map_or(0, |patch| scene.facets()[patch.facet].surface)
-        };
-        let surface_of = (0..bundles.n_bundles()).map(surface).collect();
+        let surface_of = (0..bundles.n_bundles()).map(|bundle| surface_of(&scene, &bundles, bundle)).collect();
+        let unknown_of = (0..bundles.n_bundles()).map(Some).collect();
         let areas = scene.surfaces().iter().map(Surface::area).collect();
-        Ok(Self { scene, bundles, system, surface_of, areas })
+        Ok(Self { scene, bundles, system, unknown_of, surface_of, areas, row_error: None })
+    }
+
+    /// The same with an unknown for all that is alike, in patches of this size, and with the exchange of those surfaces only that are `wanted`,
+    /// named either way round. Rows of form factors have an absolute error of `accuracy` or some of it.
+    ///
+    /// # Errors
+    /// What scenes, bases and assembly refuse.
+    pub fn folded(
+        shape: Shape,
+        patch_size: f64,
+        wanted: impl Fn(usize, usize) -> bool + Sync,
+        accuracy: f64,
+    ) -> Result<Self, CaseError> {
+        let exchanges: Vec<bool> = shape.bodies.iter().map(|body| body.exchanges).collect();
+        let (scene, bundles) = cut(shape.bodies, patch_size)?;
+        let orbits = Orbits::new(&scene, &bundles, |surface| exchanges[surface], &shape.symmetries);
+        let settings = Exchange {
+            tolerance: 1e-3 * accuracy,
+            occlusion: Occlusion::Exact { tolerance: accuracy },
+            repair: false,
+            ..Exchange::default()
+        };
+        let (system, errors) = assemble_orbits(&scene, &bundles, &orbits, &wanted, settings)?;
+        let surface_of = (0..orbits.n_orbits()).map(|k| surface_of(&scene, &bundles, orbits.members(k)[0])).collect();
+        let unknown_of = (0..bundles.n_bundles()).map(|bundle| orbits.orbit_of(bundle)).collect();
+        let areas = scene.surfaces().iter().map(Surface::area).collect();
+        let row_error = errors.iter().zip(system.etendue()).map(|(error, mu)| error / mu).fold(0.0, f64::max);
+        Ok(Self { scene, bundles, system, unknown_of, surface_of, areas, row_error: Some(row_error) })
     }
 
     pub fn n_surfaces(&self) -> usize {
@@ -147,11 +201,15 @@ impl Model {
         quadrature.max(f64::EPSILON) + 3.0 * n * report.visibility_error
     }
 
-    /// Relative error of values that are extrapolated: what was estimated for partly visible pairs. Quadrature of the others is left
-    /// out, its noise shows in the extrapolation itself.
+    /// Absolute error of form factors between surfaces: of a row's sum where that is known.
     pub fn noise(&self) -> f64 {
-        let n = (self.system.n_bundles() as f64).sqrt();
-        64.0 * f64::EPSILON + 3.0 * n * self.system.report().visibility_error
+        self.row_error.unwrap_or_else(|| self.form_factor_error())
+    }
+
+    /// Absolute error of radiosities: an error δ of the rows of F changes B = E + albedo F B by at most δ max B / (1 − max albedo).
+    pub fn radiosity_noise(&self, radiance: &Block) -> f64 {
+        let albedo = self.system.transport().scattering().values().max_abs();
+        self.noise() * PI * radiance.max_abs() / (1.0 - albedo).max(f64::EPSILON)
     }
 
     /// True where something stands between some pair of patches.
@@ -191,7 +249,8 @@ impl Model {
     pub fn gathered(&self, radiance: &Block, at: &[Probe]) -> Vec<f64> {
         let value = |probe: &Probe| {
             let factors = point_factors(&self.bundles, probe.point, probe.normal);
-            let incident: f64 = factors.iter().zip(radiance.column(0)).map(|(factor, l)| factor * PI * l).sum();
+            let radiance = |bundle: usize| self.unknown_of[bundle].map_or(0.0, |unknown| radiance.get(unknown, 0));
+            let incident: f64 = factors.iter().enumerate().map(|(k, factor)| factor * PI * radiance(k)).sum();
             let surface = &self.scene.surfaces()[probe.surface];
             let albedo = surface.front.lambertian().map_or(0.0, |albedos| albedos[0]);
             PI * surface.emission[0] + albedo * incident

@@ -2,8 +2,8 @@
 
 use super::answer::{Answers, Demand};
 use super::error::CaseError;
-use super::limit::{extrapolate, refine};
-use super::model::{Body, EXACT, Model, Walls};
+use super::limit::{EVEN, LINEAR, Refinement, extrapolate, refine};
+use super::model::{Body, EXACT, Model, Shape, WHOLE, Walls};
 use super::reader::{Case, Geometry};
 use super::revolution::{disk, sectors};
 use super::value::Value;
@@ -11,6 +11,10 @@ use crate::geometry::{Frame, Polygon, Vec3};
 
 /// Lengths of the strips that stand for an infinite one: their form factors run in powers of 1/length.
 const LENGTHS: [usize; 6] = [512, 1024, 2048, 4096, 8192, 16384];
+
+/// Error at which the refinement of a disk ends, and that of form factors past it.
+const ENOUGH: f64 = 1e-7;
+const PAST_A_DISK: f64 = 1e-9;
 
 /// Steps of central differences, in units of the parameter: the differences run in even powers of the step.
 const DIFFERENCE_STEPS: [f64; 6] = [0.25, 0.2, 0.16, 0.125, 0.1, 0.08];
@@ -55,9 +59,11 @@ fn pair_past_a_disk(fields: &Geometry, one: &Polygon, two: &Polygon) -> Result<A
     if normal.dot(one.centroid() - centre) < 0.0 {
         normal = -normal;
     }
-    let limits = refine(&[16, 24, 32, 48, 64], 2.0, |n| {
+    let levels = [8, 12, 16, 24, 32, 48, 64, 96, 128];
+    let limits = refine(Refinement { levels: &levels, powers: EVEN, enough: ENOUGH }, |n| {
         let blocker = disk(&Frame::about(normal), centre, radius, &sectors(n))?;
-        let model = Model::new(bodies(one, two, &blocker), Walls::Open, 1e-9)?;
+        let shape = Shape { bodies: bodies(one, two, &[blocker]), symmetries: Vec::new() };
+        let model = Model::folded(shape, WHOLE, |from, _| from == 0, PAST_A_DISK)?;
         let factors = model.form_factors();
         Ok((vec![factors[0][1], factors[0][2]], model.noise()))
     })?;
@@ -119,7 +125,7 @@ pub fn rectangle_family(case: &Case) -> Result<Answers, CaseError> {
         slopes.push((at(above)?.0 - at(below)?.0) / (above - below));
     }
     let slope_error = f64::EPSILON * value / steps[steps.len() - 1];
-    let limit = extrapolate(&steps, &slopes, 2.0, slope_error);
+    let limit = extrapolate(&steps, &slopes, EVEN, slope_error);
     let mut answers = Answers::new(Demand::Digits);
     answers.number("F", value, error * value);
     answers.number("dF", limit.value, limit.error);
@@ -138,7 +144,8 @@ pub fn strip_family(case: &Case) -> Result<Answers, CaseError> {
                 answers.number(name, value, error * value);
             }
             _ if length == "inf" => {
-                let limits = refine(&LENGTHS, 1.0, |n| strips(n as f64).map(|(value, error)| (vec![value], error)))?;
+                let ends = Refinement { levels: &LENGTHS, powers: LINEAR, enough: 0.0 };
+                let limits = refine(ends, |n| strips(n as f64).map(|(value, error)| (vec![value], error * value)))?;
                 answers.number(name, limits[0].value, limits[0].error);
             }
             _ => {}
@@ -159,7 +166,12 @@ pub fn cube_grid(case: &Case) -> Result<Answers, CaseError> {
             for j in 0..n {
                 let span = |k: usize| [k as f64 / n as f64, (k + 1) as f64 / n as f64];
                 let polygon = face.cell(span(i), span(j))?;
-                bodies.push(Body { polygons: vec![polygon], albedo, exitance: if f == 0 { 1.0 } else { 0.0 } });
+                bodies.push(Body {
+                    polygons: vec![polygon],
+                    albedo,
+                    exitance: if f == 0 { 1.0 } else { 0.0 },
+                    exchanges: true,
+                });
                 index.push([f, i, j]);
             }
         }

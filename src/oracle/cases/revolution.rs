@@ -46,20 +46,16 @@ pub fn crossings(frame: &Frame, centre: Vec3, radius: f64, point: Vec3, normal: 
     vec![middle - half, middle + half]
 }
 
-/// The convex polygon with corners at these azimuths (an even number) that stands for a disk, in strips of four corners: its front
-/// looks along the frame's z.
+/// The convex polygon with corners at these azimuths that stands for a disk: its front looks along the frame's z.
 ///
 /// # Errors
 /// What cannot be a polygon.
-pub fn disk(frame: &Frame, centre: Vec3, radius: f64, azimuths: &[f64]) -> Result<Vec<Polygon>, CaseError> {
-    let n = azimuths.len();
-    let corner = |k: usize| {
-        let (sine, cosine) = azimuths[k].sin_cos();
+pub fn disk(frame: &Frame, centre: Vec3, radius: f64, azimuths: &[f64]) -> Result<Polygon, CaseError> {
+    let corner = |azimuth: &f64| {
+        let (sine, cosine) = azimuth.sin_cos();
         centre + radius * (cosine * frame.x + sine * frame.y)
     };
-    // Corner k of the one half and corner n − 1 − k of the other make a strip.
-    let strips = (n / 2).saturating_sub(1);
-    (0..strips).map(|k| polygon(vec![corner(k), corner(k + 1), corner(n - 2 - k), corner(n - 1 - k)])).collect()
+    polygon(azimuths.iter().map(corner).collect())
 }
 
 /// Revolves a profile of (radius, height) points about the z axis: every piece of it becomes one quadrilateral a sector, a triangle
@@ -93,6 +89,15 @@ pub fn revolve(profile: &[[f64; 2]], azimuths: &[f64], facing: Facing) -> Result
     Ok(polygons)
 }
 
+/// A profile of several parts, each of which begins where the one before ended.
+pub fn joined(parts: impl IntoIterator<Item = Vec<[f64; 2]>>) -> Vec<[f64; 2]> {
+    let mut profile: Vec<[f64; 2]> = Vec::new();
+    for part in parts {
+        profile.extend(part.into_iter().skip(usize::from(!profile.is_empty())));
+    }
+    profile
+}
+
 /// A straight profile cut into equal pieces.
 pub fn line(from: [f64; 2], to: [f64; 2], n_pieces: usize) -> Vec<[f64; 2]> {
     let at = |k: usize| {
@@ -123,9 +128,9 @@ mod tests {
         let n = 64;
         // Inscribed polygons fall short by (2π²/3)/n² relative for a disk, and no more than twice that for the others.
         let short = 4.0 * PI * PI / 3.0 / (n * n) as f64;
-        let round = disk(&Frame::about(Vec3::Z), Vec3::ZERO, 1.0, &sectors(n)).expect("polygons");
-        assert!(area(&round) < PI && area(&round) > PI * (1.0 - short));
-        assert!(round.iter().all(|p| p.normal().dot(Vec3::Z) > 0.999));
+        let round = disk(&Frame::about(Vec3::Z), Vec3::ZERO, 1.0, &sectors(n)).expect("a polygon");
+        assert!(round.area() < PI && round.area() > PI * (1.0 - short));
+        assert!(round.normal().dot(Vec3::Z) > 0.999);
         let ball = revolve(&arc(1.0, [0.0, PI], n / 2), &sectors(n), Facing::Left).expect("polygons");
         assert!(area(&ball) < 4.0 * PI && area(&ball) > 4.0 * PI * (1.0 - short));
         let outward = |p: &Polygon| p.normal().dot(p.centroid()) > 0.0;

@@ -3,7 +3,7 @@
 use super::answer::{Answers, Outcome, Verdict, judge, judge_identity};
 use super::error::CaseError;
 use super::reader::Case;
-use super::{closed, continuous, enclosure, identities, points, polygons, round};
+use super::{closed, continuous, enclosure, identities, points, polygons, round, shells};
 use std::time::Instant;
 
 /// Answers one case from its geometry and judges the answer.
@@ -59,7 +59,9 @@ fn answers(case: &Case) -> Result<Answers, CaseError> {
         "coaxial_disks_blocked" => round::coaxial_disks_blocked(case),
         "sphere_disk" => round::sphere_disk(case),
         "sphere_rectangle" => round::sphere_rectangle(case),
-        "concentric_spheres" if !geometry.has("rho") && !geometry.has("E_outer") => round::concentric_spheres(case),
+        "concentric_spheres" if geometry.has("E_outer") => shells::zonal(case),
+        "concentric_spheres" if geometry.has("rho") => shells::grey(case),
+        "concentric_spheres" => round::concentric_spheres(case),
         "hemisphere_with_base" => round::hemisphere(case),
         "sphere_zones" => round::sphere_zones(case),
         "sphere_zones_blocked" => round::sphere_zones_blocked(case),
@@ -70,8 +72,8 @@ fn answers(case: &Case) -> Result<Answers, CaseError> {
         "coaxial_disks" => continuous::facing_disks(case),
         "tube_open_ends" => continuous::tube(case),
         "cylindrical_cavity" => continuous::cylindrical_cavity(case),
-        "spherical_cavity" => continuous::spherical_cavity(case),
-        "sphere_patches" => continuous::sphere_patches(case),
+        "spherical_cavity" => shells::spherical_cavity(case),
+        "sphere_patches" => shells::sphere_patches(case),
         "cube" => continuous::cube_means(case),
         _ => Err(CaseError::Needs("a kind of geometry that is not known here")),
     }
