@@ -6,6 +6,9 @@ use super::point::Point;
 /// Heights below this, in units of the pair's size, count as zero; what that may cost in exchange is charged.
 const ON_PLANE: f64 = 1e-26;
 
+/// Crossings less certain than this, in units of the edge, are chosen, and the choice charged; others carry their uncertainty on.
+const UNCERTAIN: f64 = 1e-28;
+
 /// The oriented plane of a polygon: through its first corner, normal to its area vector.
 pub struct Plane<'a> {
     corners: &'a [Point],
@@ -82,9 +85,10 @@ impl<'a> Plane<'a> {
             if sign(h) * sign(&heights[next]) < 0 {
                 let s = h.over(*h - heights[next]);
                 let edge = polygon[next] - *corner;
-                let crossing = *corner + edge.times(s.midpoint());
+                let is_chosen = s.radius > UNCERTAIN;
+                let crossing = *corner + edge.times(if is_chosen { s.midpoint() } else { s });
                 corners.push(crossing);
-                cut.push((crossing, Some(edge.times(Ball::exact(s.radius)))));
+                cut.push((crossing, is_chosen.then(|| edge.times(Ball::exact(s.radius)))));
             }
         }
         for (from, step) in &cut {
