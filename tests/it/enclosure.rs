@@ -340,8 +340,10 @@ fn the_fast_path_lies_between_the_bounds() {
             let value = exchange_of_pair(a, b, 1e-13).map_or(0.0, |(value, _)| value);
             let tolerance = if is_sliver(a) || is_sliver(b) { AGREEMENT_OF_SLIVERS } else { AGREEMENT };
             let off = (value / bounds.high - 1.0).max(1.0 - value / bounds.low);
-            let fault = (!bounds.holds(value, tolerance))
-                .then(|| format!("{class:?}: {value:e} for {bounds:?}, off by {off:e}"));
+            let fault = (!bounds.holds(value, tolerance)).then(|| {
+                let corners = [a, b].map(|p| p.vertices().iter().map(|v| v.to_array()).collect::<Vec<_>>());
+                format!("{class:?}: {value:e} for {bounds:?}, off by {off:e}: {corners:?}")
+            });
             let corners = || a.vertices().iter().chain(b.vertices());
             let extent = corners().map(|v| v.distance(a.centroid())).fold(0.0, f64::max);
             let width = (bounds.high - bounds.low - DIGITS * extent * extent).max(0.0) / bounds.high;

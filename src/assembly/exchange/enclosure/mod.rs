@@ -29,7 +29,7 @@ mod rule;
 use crate::geometry::{Polygon, Vec3};
 use ball::Ball;
 use edge::Edge;
-use front::{Plane, area_vector};
+use front::{MOST, Plane, area_vector};
 use point::Point;
 
 /// Relative width that is aimed at: four ulp.
@@ -81,10 +81,9 @@ pub fn enclose(a: &Polygon, b: &Polygon) -> Enclosure {
     // Keep what is in front.
     let (front_a, front_b) = (Plane::of(&whole_b).front_of(&whole_a), Plane::of(&whole_a).front_of(&whole_b));
     let (part_a, part_b) = (front_a.corners, front_b.corners);
-    // No point takes in more than π of a polygon's other side.
     let area = |corners: &[Point]| 0.5 * area_vector(corners).longest();
-    let doubt = 3.15 * (front_a.doubtful + front_b.doubtful);
-    let most = 3.15 * area(&whole_a).min(area(&whole_b));
+    let doubt = front_a.doubtful + front_b.doubtful;
+    let most = MOST * area(&whole_a).min(area(&whole_b));
 
     // Refine until the truncation is small beside the value.
     let mut value = Ball::ZERO;
