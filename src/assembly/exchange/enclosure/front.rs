@@ -2,9 +2,16 @@
 
 use super::ball::Ball;
 use super::point::Point;
+use crate::geometry::Vec3;
 
 /// Heights below this, in units of the pair's size, count as zero; what that may cost in exchange is charged.
 const ON_PLANE: f64 = 1e-26;
+
+/// Crossings less certain than this, in units of the edge, are chosen, and the choice charged; others carry their uncertainty on.
+const UNCERTAIN: f64 = 1e-28;
+
+/// ∫ |cosθ| dω over any half of the directions is π: no point exchanges more with any polygon.
+pub const MOST: f64 = 3.15;
 
 /// The oriented plane of a polygon: through its first corner, normal to its area vector.
 pub struct Plane<'a> {
@@ -17,7 +24,7 @@ pub struct Plane<'a> {
 pub struct Front {
     /// Fewer than three: nothing.
     pub corners: Vec<Point>,
-    /// Bound of the area that may be on the wrong side.
+    /// Bound of the exchange with the plane's polygon that may be counted wrongly.
     pub doubtful: f64,
 }
 
@@ -35,6 +42,17 @@ impl<'a> Plane<'a> {
             return Ball::ZERO;
         }
         self.normal.dot(point - self.corners[0])
+    }
+
+    /// Bound of ∫ |cosθ cosθ′| / r² dA′ over the polygon from any point next to a segment.
+    fn most_seen(&self, from: Point, to: Point) -> f64 {
+        let centre = self.corners.iter().map(|p| p.rounded()).sum::<Vec3>() / self.corners.len() as f64;
+        let radius = self.corners.iter().map(|p| p.rounded().distance(centre)).fold(0.0, f64::max);
+        let (from, along) = (from.rounded(), (to - from).rounded());
+        let s = ((centre - from).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        // A millionth of safety for rounding and for what lies next to the segment.
+        let gap = (1.0 - 1e-6) * centre.distance(from + s * along) - (1.0 + 1e-6) * radius;
+        if gap > 0.0 { (0.501 * self.length / (gap * gap)).min(MOST) } else { MOST }
     }
 
     /// The part of a convex polygon in front (Sutherland and Hodgman 1974).
@@ -63,7 +81,7 @@ impl<'a> Plane<'a> {
         let doubt = doubt.fold(0.0, f64::max);
         let extent = heights.iter().map(|h| h.mignitude()).fold(0.0, f64::max);
         let share = if doubt == 0.0 { 0.0 } else { (4.01 * doubt / extent).min(1.0) };
-        let mut doubtful = if share > 0.0 { 0.501 * share * area_vector(polygon).longest() } else { 0.0 };
+        let mut doubtful = if share > 0.0 { MOST * 0.501 * share * area_vector(polygon).longest() } else { 0.0 };
         if !heights.iter().any(|h| sign(h) > 0) {
             return Front { corners: Vec::new(), doubtful };
         }
@@ -82,15 +100,17 @@ impl<'a> Plane<'a> {
             if sign(h) * sign(&heights[next]) < 0 {
                 let s = h.over(*h - heights[next]);
                 let edge = polygon[next] - *corner;
-                let crossing = *corner + edge.times(s.midpoint());
+                let is_chosen = s.radius > UNCERTAIN;
+                let crossing = *corner + edge.times(if is_chosen { s.midpoint() } else { s });
                 corners.push(crossing);
-                cut.push((crossing, Some(edge.times(Ball::exact(s.radius)))));
+                cut.push((crossing, is_chosen.then(|| edge.times(Ball::exact(s.radius)))));
             }
         }
         for (from, step) in &cut {
             let Some(step) = step else { continue };
-            let swept = cut.iter().map(|(to, _)| step.cross(*to - *from).longest());
-            doubtful += 0.501 * swept.fold(0.0, f64::max);
+            let swept =
+                cut.iter().map(|(to, _)| 0.501 * step.cross(*to - *from).longest() * self.most_seen(*from, *to));
+            doubtful += swept.fold(0.0, f64::max);
         }
         Front { corners, doubtful }
     }

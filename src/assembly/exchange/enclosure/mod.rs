@@ -4,9 +4,9 @@
 //! T = ∫∫ cosθ cosθ′ / r² dA dA′ = ½ ∮∮ ln r dx·dx′ = ¼ Σₑ Σ_f (e·f) ∫₀¹∫₀¹ ln|x(t) − y(τ)|² dτ dt
 //! ```
 //!
-//! over the edges of the parts in front of each other's plane. Everything is computed in balls of some 32 digits ([`ball`]), so that
-//! the cancellation between edges costs nothing, and every quadrature comes with a bound of its error ([`pair`]). It shares no formula
-//! with the fast path but the contour integral itself, and believes no function of the platform's mathematical library.
+//! over the edges of the parts in front of each other's plane. Everything is computed in balls of some 32 digits, so that the
+//! cancellation between edges costs nothing, and every quadrature comes with a bound of its error. No code is shared with the fast path,
+//! nor any formula but the contour integral itself, and no function of the platform's mathematical library is believed.
 //!
 //! | file | holds |
 //! |---|---|
@@ -29,7 +29,7 @@ mod rule;
 use crate::geometry::{Polygon, Vec3};
 use ball::Ball;
 use edge::Edge;
-use front::{Plane, area_vector};
+use front::{MOST, Plane, area_vector};
 use point::Point;
 
 /// Relative width that is aimed at: four ulp.
@@ -63,11 +63,12 @@ impl Enclosure {
 /// spans its contour, the fan of triangles from any vertex for one. Whoever uses the unit normal and the vertices as if they were planar
 /// differs by the planarity defect over the polygon's size, relative (some 1e-16 if it was only rotated).
 ///
-/// The relative width is about 1e-15 wherever the exchange is above some 1e-15 of the larger polygon's étendue: for pairs far, near,
-/// touching, slivers alike. Polygons in one plane give exactly 0 where that can be told from the vertices (equal coordinates), else
+/// The relative width is below 1e-15, for pairs far, near, touching, slivers alike, unless the exchange is so small that the balls' digits
+/// (1e-29 of the pair's extent squared) show. Polygons in one plane give exactly 0 where that can be told from the vertices (equal coordinates), else
 /// bounds that hold 0.
 ///
-/// Cost: some 0.1 ms for pairs that are apart, up to some ms where edges touch.
+/// Lengths from 1e-150 to 1e150. Cost: 0.1 ms for most pairs, whether apart or with a common edge or corner, and up to some ms where an
+/// edge touches another in between.
 pub fn enclose(a: &Polygon, b: &Polygon) -> Enclosure {
     // Move the pair to the origin and scale it to one by a power of two, exactly.
     let origin = a.vertices()[0];
@@ -80,10 +81,9 @@ pub fn enclose(a: &Polygon, b: &Polygon) -> Enclosure {
     // Keep what is in front.
     let (front_a, front_b) = (Plane::of(&whole_b).front_of(&whole_a), Plane::of(&whole_a).front_of(&whole_b));
     let (part_a, part_b) = (front_a.corners, front_b.corners);
-    // No point takes in more than π of a polygon's other side.
     let area = |corners: &[Point]| 0.5 * area_vector(corners).longest();
-    let doubt = 3.15 * (front_a.doubtful + front_b.doubtful);
-    let most = 3.15 * area(&whole_a).min(area(&whole_b));
+    let doubt = front_a.doubtful + front_b.doubtful;
+    let most = MOST * area(&whole_a).min(area(&whole_b));
 
     // Refine until the truncation is small beside the value.
     let mut value = Ball::ZERO;

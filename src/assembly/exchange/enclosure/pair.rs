@@ -25,8 +25,8 @@ const SAFETY: f64 = 1e-10;
 /// Ellipses thinner than this (ρ + 1/ρ, so ρ = 1.37) are not used.
 const THINNEST: f64 = 2.1;
 
-/// Truncation below this is lost in the rounding of the moments.
-const FINEST: f64 = 1e-28;
+/// Truncation below this is lost in rounding.
+const FINEST: f64 = 1e-32;
 
 /// A panel is halved at most this often.
 const DEEPEST: usize = 120;
@@ -102,11 +102,12 @@ struct Decay {
 }
 
 impl Decay {
-    /// Error of a rule, of coefficients from 2n on and of the moments below.
+    /// Error of a rule, of coefficients from 2n on and of the moments below: Σ |aₖ| from k = 2 on is at most 2 size / (ρ² − 1), and a₀
+    /// differs from half the rule's sum by as much again.
     fn error(&self, rule: &Rule) -> f64 {
         let n = rule.size() as f64;
         let tail = self.rho.powi(-2 * rule.size() as i32) / (1.0 - self.rho.powi(-2));
-        self.size * (4.2 / n * tail + 5.0 * rule.moment_error)
+        self.size * (4.2 / n * tail + 5.0 / (self.rho * self.rho - 1.0) * rule.moment_error)
     }
 
     /// The same for |aₖ| ≤ size · ρ⁻ᵏ.
@@ -177,14 +178,17 @@ impl Panel {
         let half = (self.high - self.low).scaled(0.5);
         let centre = outer.start + outer.along.times(middle);
         let step = outer.along.times(half);
+        // Take out a constant: no rule's weights sum to 2 exactly.
+        let potential = |x| inner.potential(x, plan.without_ridge);
+        let constant = potential(centre).midpoint();
         let mut sum = Ball::ZERO;
         for (node, weight) in &plan.rule.nodes {
             let offset = step.times(*node);
-            let values = [centre + offset, centre - offset].map(|x| inner.potential(x, plan.without_ridge));
-            sum = sum + *weight * (values[0] + values[1]);
+            let pair = (potential(centre + offset) - constant) + (potential(centre - offset) - constant);
+            sum = sum + *weight * pair;
         }
         let error = plan.error + plan.rule.moment_error * sum.magnitude();
-        let value = half * sum.widened(error);
+        let value = half * (sum.widened(error) + constant.scaled(2.0));
         if plan.without_ridge { value + inner.ridge(outer, (self.low, self.high)) } else { value }
     }
 
@@ -210,7 +214,7 @@ fn rho(sum: f64) -> Option<f64> {
 /// relative to the origin.
 fn nearest(from: Vec3, to: Vec3, direction: Vec3) -> Option<f64> {
     let (a, b) = (from.length(), to.length());
-    // The origin itself is one of the points: the sum cannot fall.
+    // The origin may be one of the points: the sum cannot fall. A slope of rounding's size costs less than safety takes off.
     let slope = |v: Vec3, length: f64| if length == 0.0 { 1.0 } else { -v.dot(direction) / length };
     (slope(from, a) + slope(to, b) >= -1e-12).then_some((a + b) * (1.0 - SAFETY))
 }

@@ -75,19 +75,12 @@ fn node(n: usize, k: usize) -> (Ball, Ball) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::assembly::exchange::rules::gauss_legendre;
 
     #[test]
-    fn rules_are_those_of_gauss_and_integrate_powers() {
+    fn rules_integrate_powers() {
         for rule in RULES.iter() {
             let n = rule.size();
             assert!(rule.moment_error < 1e-28, "{n}: {:e}", rule.moment_error);
-            // Against the rule in f64, on [0, 1] there: a few ulp.
-            let plain = gauss_legendre(n);
-            for (k, (node, weight)) in rule.nodes.iter().enumerate() {
-                assert!((node.high - (1.0 - 2.0 * plain.nodes[k])).abs() < 1e-15, "{n} {k}");
-                assert!((weight.high - 2.0 * plain.weights[k]).abs() < 1e-14, "{n} {k}");
-            }
             // Powers are sums of Chebyshev polynomials whose coefficients sum to 1.
             for power in (0..2 * n as i32).step_by(2) {
                 let value = |x: Ball| (0..power).fold(Ball::ONE, |product, _| product * x);
