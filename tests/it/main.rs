@@ -24,6 +24,7 @@ mod sampling;
 mod scattering;
 mod scenes;
 mod shadows;
+mod shafts;
 mod solvers;
 mod sphere;
 mod stats;
