@@ -11,8 +11,14 @@ pub fn height(normal: Vec3, on_plane: Vec3, point: Vec3) -> f64 {
     if height.abs() <= rounding { 0.0 } else { height }
 }
 
+/// Keys nearer than this may be of one plane.
+const KEY_RESOLUTION: f64 = 1e-8;
+
 /// A number for every polygon, equal where two lie in one plane (facing alike or opposite) to within the rounding of their
-/// coordinates. Cost O(n log n) unless many planes nearly coincide.
+/// coordinates: the number of one of them.
+///
+/// Among planes that nearly coincide, every polygon is held against the largest of each plane found so far, whose normal is known
+/// best. Cost O(n log n), unless very many planes nearly coincide.
 pub fn group_by_plane(polygons: &[&Polygon]) -> Vec<u32> {
     let scale =
         polygons.iter().flat_map(|p| p.vertices()).map(|v| v.abs().max_element()).fold(f64::MIN_POSITIVE, f64::max);
@@ -27,14 +33,20 @@ pub fn group_by_plane(polygons: &[&Polygon]) -> Vec<u32> {
     }
     keys.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
 
-    // Join neighbours that are truly coplanar.
+    // Among neighbours, largest first, join each to the planes that it lies in.
     let mut parent: Vec<usize> = (0..polygons.len()).collect();
-    for (k, &(key, i)) in keys.iter().enumerate() {
-        for &(other, j) in keys[k + 1..].iter().take_while(|(other, _)| other - key < 1e-8) {
-            debug_assert!(other >= key);
-            let (a, b) = (root(&mut parent, i), root(&mut parent, j));
-            if a != b && coplanar(polygons[i], polygons[j]) {
+    for run in keys.chunk_by_mut(|a, b| b.0 - a.0 < KEY_RESOLUTION) {
+        run.sort_by(|a, b| polygons[b.1].area().total_cmp(&polygons[a.1].area()).then(a.1.cmp(&b.1)));
+        let mut planes: Vec<Plane> = Vec::new();
+        for &(_, i) in run.iter() {
+            let mut is_new = true;
+            for plane in planes.iter().filter(|plane| plane.holds(polygons[i])) {
+                is_new = false;
+                let (a, b) = (root(&mut parent, i), root(&mut parent, plane.of));
                 parent[a.max(b)] = a.min(b);
+            }
+            if is_new {
+                planes.push(Plane::of(i, polygons[i]));
             }
         }
     }
@@ -49,15 +61,47 @@ fn root(parent: &mut [usize], mut i: usize) -> usize {
     i
 }
 
-/// True if every vertex of each lies in the plane of the other, to 64 ulp of the coordinates involved.
-fn coplanar(a: &Polygon, b: &Polygon) -> bool {
-    let lies_in = |plane: &Polygon, p: &Polygon| {
-        p.vertices().iter().all(|v| {
-            let offset = *v - plane.centroid();
-            let rounding =
-                64.0 * f64::EPSILON * (v.abs().max_element() + plane.centroid().abs().max_element() + offset.length());
-            plane.normal().dot(offset).abs() <= rounding
-        })
-    };
-    lies_in(a, b) && lies_in(b, a)
+/// The plane of a polygon, and how far it can be trusted.
+pub(super) struct Plane {
+    /// The polygon's number.
+    pub of: usize,
+    pub normal: Vec3,
+    pub point: Vec3,
+    /// Length over which the corners fix the normal: the polygon's width.
+    width: f64,
+}
+
+impl Plane {
+    pub fn of(number: usize, polygon: &Polygon) -> Self {
+        let v = polygon.vertices();
+        let diameter = v.iter().map(|v| v.distance(polygon.centroid())).fold(0.0, f64::max);
+        Self { of: number, normal: polygon.normal(), point: polygon.centroid(), width: polygon.area() / diameter }
+    }
+
+    /// Signed height of a point above the plane; zero within 64 ulp of the coordinates involved near the polygon that the plane is
+    /// of, and within what those make of its normal further away.
+    pub fn height(&self, point: Vec3) -> f64 {
+        let offset = point - self.point;
+        let distance = offset.length();
+        let coordinates = point.abs().max_element() + self.point.abs().max_element() + distance;
+        let rounding = 64.0 * f64::EPSILON * coordinates * (distance / self.width).max(1.0);
+        let height = self.normal.dot(offset);
+        if height.abs() <= rounding { 0.0 } else { height }
+    }
+
+    fn holds(&self, polygon: &Polygon) -> bool {
+        polygon.vertices().iter().all(|v| self.height(*v) == 0.0)
+    }
+}
+
+/// The largest polygon of every plane that a polygon has a number of, by [`group_by_plane`]; in the order of those numbers.
+pub(super) fn largest_of_planes(polygons: &[&Polygon], planes: &[u32]) -> Vec<Plane> {
+    let mut largest: Vec<Option<usize>> = vec![None; polygons.len()];
+    for (i, &plane) in planes.iter().enumerate() {
+        let best = &mut largest[plane as usize];
+        if best.is_none_or(|best| polygons[i].area() > polygons[best].area()) {
+            *best = Some(i);
+        }
+    }
+    largest.into_iter().flatten().map(|i| Plane::of(i, polygons[i])).collect()
 }

@@ -25,6 +25,7 @@ mod sampling;
 mod scattering;
 mod scenes;
 mod shadows;
+mod shafts;
 mod solvers;
 mod sphere;
 mod stats;

@@ -7,25 +7,24 @@
 //! exact sign of the ray's side of each edge, so that two polygons which share an edge never both let a ray through.
 
 mod block;
+mod boxes;
 mod eight;
 mod local;
 mod shape;
+mod supporting;
 mod tree;
 mod walk;
 
 use super::{Polygon, Ray, Vec3, plane::group_by_plane};
 use block::Block;
+use boxes::Boxes;
 use glam::Vec3A;
 use local::{Local, Reach};
-use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::builder::build_bvh2};
+use obvhs::aabb::Aabb;
 use shape::{Probe, Shape};
-use std::time::Duration;
+use supporting::supporting;
 use tree::Tree;
 use walk::{Any, Closest, Near};
-
-/// Length by which boxes of the normalised scene (radius 1) are grown: f32 rounding of origin, direction and box (fifteen times 6e-8),
-/// and a margin of four.
-const BOX_MARGIN: f32 = 4e-6;
 
 /// Up to this many polygons all blocks are tested, without boxes.
 const BRUTE: usize = 40;
@@ -67,33 +66,14 @@ impl Tracer {
     /// of the scene on one side of its plane (a wall of a convex room) never does. Polygons keep their numbers.
     pub fn occluders(polygons: &[&Polygon]) -> Self {
         let planes = group_by_plane(polygons);
-        let blocking: Vec<usize> = (0..polygons.len()).filter(|&i| !is_supporting(polygons[i], polygons)).collect();
+        let is_supporting = supporting(polygons, &planes);
+        let blocking: Vec<usize> = (0..polygons.len()).filter(|&i| !is_supporting[planes[i] as usize]).collect();
         Self::over(polygons, planes, &blocking)
     }
 
     fn over(polygons: &[&Polygon], planes: Vec<u32>, chosen: &[usize]) -> Self {
-        // Centre and scale, so that f32 boxes are as good for a pin as for a planet.
-        let corners = || chosen.iter().flat_map(|&i| polygons[i].vertices());
-        let (low, high) =
-            corners().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
-        let (centre, radius) = if chosen.is_empty() {
-            (Vec3::ZERO, 1.0)
-        } else {
-            (0.5 * (low + high), (0.5 * low.distance(high)).max(f64::MIN_POSITIVE))
-        };
-        let local = Local::new(centre, radius);
-        let boxes: Vec<Aabb> = chosen
-            .iter()
-            .map(|&i| {
-                let mut bounds = Aabb::empty();
-                polygons[i].vertices().iter().for_each(|v| {
-                    bounds.extend(Vec3A::from(local.point(*v).as_vec3()));
-                });
-                bounds.min -= Vec3A::splat(BOX_MARGIN);
-                bounds.max += Vec3A::splat(BOX_MARGIN);
-                bounds
-            })
-            .collect();
+        let boxes = Boxes::around(chosen.iter().map(|&i| polygons[i]));
+        let local = boxes.local;
 
         // Lay the polygons out in the order of the blocks.
         let mut order: Vec<usize> = Vec::with_capacity(chosen.len());
@@ -108,13 +88,8 @@ impl Tracer {
                 }),
             )
         };
-        let tree = if chosen.len() <= BRUTE {
-            Tree::flat(chosen.len(), block)
-        } else {
-            let parameters = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::medium_build() };
-            let mut build_time = Duration::ZERO;
-            Tree::collapse(&build_bvh2(&boxes, parameters, &mut build_time), block)
-        };
+        let tree =
+            if chosen.len() <= BRUTE { Tree::flat(chosen.len(), block) } else { Tree::collapse(&boxes.tree(), block) };
         let mut corners = Vec::new();
         let shapes = order
             .iter()
@@ -132,7 +107,7 @@ impl Tracer {
                 }
             })
             .collect();
-        Self { shapes, corners, planes, tree, local, radius }
+        Self { shapes, corners, planes, tree, local, radius: boxes.radius }
     }
 
     /// Number of polygons that can be met.
@@ -245,21 +220,3 @@ impl Tracer {
 
 #[cfg(test)]
 mod tests;
-
-/// True if no vertex of the scene lies strictly on one of the polygon's sides.
-fn is_supporting(polygon: &Polygon, all: &[&Polygon]) -> bool {
-    let (origin, normal) = (polygon.centroid(), polygon.normal());
-    let (mut above, mut below) = (false, false);
-    for v in all.iter().flat_map(|p| p.vertices()) {
-        let offset = *v - origin;
-        let height = normal.dot(offset);
-        // A vertex counts as on the plane within the rounding of its own coordinates.
-        let rounding = 16.0 * f64::EPSILON * (v.abs().max_element() + offset.length());
-        above |= height > rounding;
-        below |= height < -rounding;
-        if above && below {
-            return false;
-        }
-    }
-    true
-}
