@@ -9,12 +9,16 @@ const LADDER: [usize; 8] = [1, 2, 3, 4, 6, 8, 12, 16];
 
 static RULES: LazyLock<[Rule; LADDER.len()]> = LazyLock::new(|| LADDER.map(gauss_legendre));
 
-/// Of a function that is smooth on a cell, differences of successive rules fall geometrically. What is left after the last is at
-/// most this many times what that predicts.
-const CAUTION: f64 = 4.0;
+/// What the estimate of a smooth cell is multiplied with: constants that the rate of convergence leaves open.
+const CAUTION: f64 = 8.0;
+
+/// Where the error falls no faster than this, cells that touch a singularity or hold kinks, the change from rule to rule is all there is to
+/// go by, times the doubt.
+const SLOWEST: f64 = 0.5;
+const DOUBT: f64 = 4.0;
 
 /// Points a pair may cost.
-const MOST_POINTS: usize = 2_000_000;
+const MOST_POINTS: usize = 200_000;
 
 /// A bilinear quadrilateral (two corners may coincide) and what is known about the integral over it.
 #[derive(Clone, Copy, Debug)]
@@ -26,31 +30,49 @@ pub struct Cell {
     pub is_smooth: bool,
     rung: usize,
     value: f64,
+    /// By how much the error falls from a rule of n to one of n + 1 points an axis.
+    decay: f64,
+    /// Error of the last rule, were the constants one.
+    envelope: f64,
     change: f64,
-    /// Of this change to the one before.
-    ratio: f64,
     error: f64,
 }
 
 impl Cell {
-    fn new(corners: [Vec3; 4], term: usize, is_smooth: bool) -> Self {
-        Self { corners, term, is_smooth, rung: 0, value: 0.0, change: 0.0, ratio: 1.0, error: 0.0 }
+    /// `clearance(x)` is the distance of x from the nearest singularity of the integrand.
+    fn new(corners: [Vec3; 4], term: usize, is_smooth: bool, clearance: &impl Fn(usize, Vec3) -> f64) -> Self {
+        let mut cell = Self { corners, term, is_smooth, rung: 0, value: 0.0, decay: SLOWEST, envelope: 0.0, change: 0.0, error: 0.0 };
+        if is_smooth {
+            // Gauss rules converge as ρ^(−2n), ρ the sum of the axes of the ellipse about ±1 that reaches the singularity.
+            let centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+            let radius = corners.iter().map(|v| v.distance_squared(centre)).fold(0.0, f64::max).sqrt();
+            let reach = clearance(term, centre) / radius;
+            if reach > 1.0 {
+                cell.decay = (reach - (reach * reach - 1.0).sqrt()).powi(2).min(SLOWEST);
+            }
+        }
+        cell
     }
 
     /// Covers a convex polygon.
-    pub fn cover(polygon: &[Vec3], term: usize, is_smooth: bool, into: &mut Vec<Self>) {
+    pub fn cover(
+        polygon: &[Vec3],
+        term: usize,
+        is_smooth: bool,
+        clearance: &impl Fn(usize, Vec3) -> f64,
+        into: &mut Vec<Self>,
+    ) {
         let mut k = 1;
         while k + 1 < polygon.len() {
             let last = polygon.get(k + 2).copied().unwrap_or(polygon[0]);
-            into.push(Self::new([polygon[0], polygon[k], polygon[k + 1], last], term, is_smooth));
+            into.push(Self::new([polygon[0], polygon[k], polygon[k + 1], last], term, is_smooth, clearance));
             k += 2;
         }
     }
 
     /// The first two rules; a third where kinks can hide from them.
     fn begin(&mut self, normal: Vec3, n_points: &mut usize, integrand: &mut impl FnMut(usize, Vec3) -> f64) {
-        let term = self.term;
-        self.value = self.apply(normal, 0, |x| integrand(term, x));
+        (self.value, _) = self.apply(normal, 0, integrand);
         *n_points += 1;
         self.climb(normal, n_points, integrand);
         if !self.is_smooth {
@@ -60,40 +82,49 @@ impl Cell {
 
     /// The next rule.
     fn climb(&mut self, normal: Vec3, n_points: &mut usize, integrand: &mut impl FnMut(usize, Vec3) -> f64) {
-        let term = self.term;
         let rung = self.rung + 1;
-        let value = self.apply(normal, rung, |x| integrand(term, x));
+        let (value, spread) = self.apply(normal, rung, integrand);
         let change = (value - self.value).abs();
-        let is_settling = self.is_smooth && rung > 1 && change < self.change;
-        self.ratio = if self.change > 0.0 { change / self.change } else { 0.0 };
-        self.error = if is_settling { change * (CAUTION * self.ratio).min(1.0) } else { change };
-        (self.rung, self.value, self.change) = (rung, value, change);
+        let steps = (LADDER[rung] - LADDER[self.rung]) as i32;
+        // One point is off by the second differences, which may cancel in the sum: the first ones do not.
+        if rung == 1 {
+            self.envelope = spread * self.decay.sqrt();
+        }
+        self.envelope = change.max(self.envelope) * self.decay.powi(steps);
+        if self.decay < SLOWEST {
+            self.error = CAUTION * self.envelope;
+        } else {
+            self.error = DOUBT * change.max(0.5 * self.change);
+        }
+        self.change = if rung == 1 { change.max(0.4 * spread) } else { change };
+        (self.rung, self.value) = (rung, value);
         *n_points += LADDER[rung] * LADDER[rung];
     }
 
     /// True where smaller cells promise more than longer rules.
     fn wants_quarters(&self) -> bool {
-        if self.is_smooth {
-            self.rung + 1 == LADDER.len() || (self.rung >= 4 && self.ratio > 0.2)
-        } else {
-            self.rung >= 3
-        }
+        self.rung + 1 == LADDER.len() || (self.decay > 0.3 && self.rung >= 3)
     }
 
-    fn apply(&self, normal: Vec3, rung: usize, mut integrand: impl FnMut(Vec3) -> f64) -> f64 {
+    /// The integral by one rule, and the difference of the largest and the smallest value times the area.
+    fn apply(&self, normal: Vec3, rung: usize, integrand: &mut impl FnMut(usize, Vec3) -> f64) -> (f64, f64) {
         let [a, b, c, d] = self.corners;
         let rule = &RULES[rung];
-        let mut sum = 0.0;
+        let (mut sum, mut area) = (0.0, 0.0);
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for (t, wt) in rule.nodes.iter().zip(&rule.weights) {
-            let (low, high) = (a + *t * (d - a), b + *t * (c - b));
+            let (start, end) = (a + *t * (d - a), b + *t * (c - b));
             let slope = (1.0 - t) * (b - a) + *t * (c - d);
             for (s, ws) in rule.nodes.iter().zip(&rule.weights) {
                 let across = (1.0 - s) * (d - a) + *s * (c - b);
                 let weight = ws * wt * slope.cross(across).dot(normal);
-                sum += weight * integrand(low + *s * (high - low));
+                let value = integrand(self.term, start + *s * (end - start));
+                (low, high) = (low.min(value), high.max(value));
+                sum += weight * value;
+                area += weight;
             }
         }
-        sum
+        (sum, area * (high - low))
     }
 
     fn quarters(&self) -> [[Vec3; 4]; 4] {
@@ -115,7 +146,13 @@ pub struct Sum {
 /// Σ over the cells, and its error estimate. Cells are counter-clockwise about `normal`.
 ///
 /// `integrand(term, x)` is called with points inside the cells of that term.
-pub fn integrate(cells: &mut Vec<Cell>, normal: Vec3, tolerance: f64, mut integrand: impl FnMut(usize, Vec3) -> f64) -> Sum {
+pub fn integrate(
+    cells: &mut Vec<Cell>,
+    normal: Vec3,
+    tolerance: f64,
+    clearance: &impl Fn(usize, Vec3) -> f64,
+    mut integrand: impl FnMut(usize, Vec3) -> f64,
+) -> Sum {
     let mut n_points = 0;
     for cell in cells.iter_mut() {
         cell.begin(normal, &mut n_points, &mut integrand);
@@ -132,7 +169,7 @@ pub fn integrate(cells: &mut Vec<Cell>, normal: Vec3, tolerance: f64, mut integr
             if cells[k].wants_quarters() {
                 let cell = cells.swap_remove(k);
                 for corners in cell.quarters() {
-                    let mut part = Cell::new(corners, cell.term, cell.is_smooth);
+                    let mut part = Cell::new(corners, cell.term, cell.is_smooth, clearance);
                     part.begin(normal, &mut n_points, &mut integrand);
                     cells.push(part);
                 }

@@ -154,11 +154,17 @@ impl Desk {
 
         let Self { cells, terms, targets, active, scratch, .. } = self;
         self.n_cells += cells.len();
-        let sum = cubature::integrate(cells, floor.normal, tolerance / PI, |term, x| {
+        let clearance = |term: usize, x: Vec3| {
+            let Term { target, edges, .. } = &terms[term];
+            clearance(x, &targets[target.clone()], &active[edges.clone()])
+        };
+        let sum = cubature::integrate(cells, floor.normal, tolerance / PI, &clearance, |term, x| {
             let Term { sign, target, edges } = &terms[term];
             sign * flux::hidden(x, floor.normal, &targets[target.clone()], &active[edges.clone()], scratch)
         });
         self.n_points += sum.n_points;
+        if std::env::var("DUMP").is_ok() { println!("  terms {} cells {} nonsmooth {} points {} err {:e}", terms.len(), cells.len(), cells.iter().filter(|c| !c.is_smooth).count(), sum.n_points, sum.error);
+            for (k,t) in terms.iter().enumerate() { println!("    term {k} sign {} target {} edges {} cells {}", t.sign, t.target.len(), t.edges.len(), cells.iter().filter(|c| c.term==k).count()); } }
         Shadow::Partial { blocked: PI * sum.value.max(0.0), error: PI * sum.error }
     }
 
@@ -216,10 +222,16 @@ impl Desk {
         }
         let sees_front = self.fronts.len() > first_front;
         let is_flat = body.faces.len() == 2;
-        let looks_in = body.opening.is_some_and(|opening| self.is_front[opening]);
-        if (!sees_front && !is_flat)
-            || (looks_in && !body.excludes(&self.targets[..self.n_target], stage.target_normal))
-        {
+        let reaches_out = || body.excludes(&self.targets[..self.n_target], stage.target_normal);
+        if !sees_front && !is_flat {
+            // From inside a closed body nothing outside is seen.
+            if body.opening.is_some() || !reaches_out() {
+                return false;
+            }
+            self.outlines.push(Outline { edges: first_edge..first_edge, fronts: first_front..first_front });
+            return true;
+        }
+        if body.opening.is_some_and(|opening| self.is_front[opening]) && !reaches_out() {
             return false;
         }
         for rim in &body.rims {
@@ -278,7 +290,7 @@ impl Desk {
             let other = self.outlines[other].edges.clone();
             let apart = |one: Range<usize>, two: Range<usize>| {
                 let outside = |edge: &Edge| self.edges[two.clone()].iter().all(|corner| edge.never_hides(part, &[corner.from]));
-                self.edges[one].iter().any(outside)
+                !two.is_empty() && self.edges[one].iter().any(outside)
             };
             if apart(outline.edges.clone(), other.clone()) || apart(other, outline.edges.clone()) {
                 return None;
@@ -331,8 +343,9 @@ impl Desk {
             std::mem::swap(pieces, spare);
         }
         let is_smooth = self.chain.is_empty() && lines.len() <= MOST_LINES;
+        let clearance = |_: usize, x: Vec3| clearance(x, target, edges);
         for piece in pieces.iter() {
-            Cell::cover(piece, number, is_smooth, cells);
+            Cell::cover(piece, number, is_smooth, &clearance, cells);
         }
     }
 }
@@ -351,6 +364,22 @@ fn front(polygon: &[Vec3], plane: &Plane) -> Option<Vec<Vec3>> {
             half.iter().next().map(<[Vec3]>::to_vec)
         }
     }
+}
+
+/// Distance of a point from whatever makes F(x → target ∩ hidden sides) singular: the edges' lines and the sides of the target.
+fn clearance(x: Vec3, target: &[Vec3], edges: &[Edge]) -> f64 {
+    let mut from = target[target.len() - 1];
+    let mut nearest = f64::INFINITY;
+    for &to in target {
+        let (side, offset) = (to - from, x - from);
+        let along = (offset.dot(side) / side.length_squared()).clamp(0.0, 1.0);
+        nearest = nearest.min((offset - along * side).length_squared());
+        from = to;
+    }
+    for edge in edges {
+        nearest = nearest.min(edge.plane_from(x).length_squared() / (edge.to - edge.from).length_squared());
+    }
+    nearest.sqrt()
 }
 
 /// Distance of a point from a segment.
