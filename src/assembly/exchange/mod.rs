@@ -25,7 +25,8 @@ use crate::scene::Scene;
 use quadrature::{Ladder, Nodes};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use visibility::{End, Visibility};
+use shadow::Desk;
+use visibility::{End, Obstacles, Visibility};
 
 /// How exchange is computed: accuracy is the caller's choice, and every number here enters the provenance of the result.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,7 +131,7 @@ pub(super) fn compute(
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Assembled, Overfull> {
     let polygons: Vec<&Polygon> = (0..scene.facets().len()).map(|facet| scene.polygon(facet)).collect();
-    let occluders = Tracer::occluders(&polygons);
+    let obstacles = Obstacles::new(&polygons);
     let everything = Tracer::new(&polygons);
     let patches: Vec<&Patch> = (0..bundles.elements().len()).filter_map(|e| bundles.patch(e)).collect();
     let etendue = bundles.etendue();
@@ -144,7 +145,7 @@ pub(super) fn compute(
         .into_par_iter()
         .with_max_len(1)
         .map(|i| {
-            let row = upper_row(&patches, (&ladder, &nodes), etendue, &occluders, settings, i);
+            let row = upper_row(&patches, (&ladder, &nodes), etendue, &obstacles, settings, i);
             let finished = done.fetch_add(n - i, Ordering::Relaxed) + (n - i);
             progress(0.95 * finished as f64 / (0.5 * (n * (n + 1)) as f64));
             row
@@ -207,16 +208,17 @@ fn upper_row(
     patches: &[&Patch],
     (ladder, nodes): (&Ladder, &[Nodes]),
     etendue: &[f64],
-    occluders: &Tracer,
+    obstacles: &Obstacles,
     settings: Exchange,
     i: usize,
 ) -> (Vec<Entry>, Tally) {
     let mut tally = Tally::default();
     let mut row = Vec::new();
+    let mut desk = Desk::default();
     let a = patches[i];
     for j in i + 1..patches.len() {
         let b = patches[j];
-        if occluders.coplanar(a.facet, b.facet) {
+        if obstacles.tracer.coplanar(a.facet, b.facet) {
             continue;
         }
         let pair = quadrature::unoccluded(ladder, (&a.polygon, &nodes[i]), (&b.polygon, &nodes[j]), settings.tolerance);
@@ -227,7 +229,9 @@ fn upper_row(
         let key = mix(&[settings.seed, 0, i as u64, j as u64]);
         let ends =
             [(a, i), (b, j)].map(|(patch, k)| End { polygon: &patch.polygon, facet: patch.facet, etendue: etendue[k] });
-        match visibility::between(occluders, ends[0], ends[1], settings.occlusion, settings.visibility_rays, key) {
+        let [first, last] = ends;
+        let n_rays = settings.visibility_rays;
+        match visibility::between(obstacles, &mut desk, first, last, settings.occlusion, n_rays, key) {
             Visibility::Full => {
                 tally.n_clear += 1;
                 row.push(Entry { column: j as u32, value: exchange, variance: 0.0 });

@@ -1,7 +1,7 @@
 //! How much of the exchange of two patches gets through what stands between them.
 
 use super::Occlusion;
-use super::shadow;
+use super::shadow::{Bodies, Desk, Shadow};
 use crate::geometry::{Polygon, Shaft, Tracer, Vec3};
 use crate::sampling::{Kronecker, mix};
 
@@ -27,22 +27,50 @@ pub struct End<'a> {
     pub etendue: f64,
 }
 
+/// What may stand between patches: single polygons for rays, whole bodies for shadows.
+pub struct Obstacles {
+    pub tracer: Tracer,
+    bodies: Bodies,
+}
+
+impl Obstacles {
+    /// Builds the tree and joins facets into bodies. Cost O(n log n) for scenes of bodies of bounded size.
+    pub fn new(polygons: &[&Polygon]) -> Self {
+        let tracer = Tracer::occluders(polygons);
+        let bodies = Bodies::new(&tracer, polygons);
+        Self { tracer, bodies }
+    }
+}
+
 /// Classifies the pair, and where that does not settle it integrates what is blocked, or casts `n_rays` between points spread
 /// evenly over both.
 ///
 /// The share is Σ k V / Σ k, k the kernel cosθ cosθ'/r² of each ray and V whether it gets through. Its variance is that of the
 /// weighted mean with half a ray added to each outcome, so that no finite number of rays claims certainty.
-pub fn between(occluders: &Tracer, a: End, b: End, occlusion: Occlusion, n_rays: usize, key: u64) -> Visibility {
+///
+/// `desk` is room to work in, and leaves no trace in the result.
+pub fn between(
+    obstacles: &Obstacles,
+    desk: &mut Desk,
+    a: End,
+    b: End,
+    occlusion: Occlusion,
+    n_rays: usize,
+    key: u64,
+) -> Visibility {
+    let occluders = &obstacles.tracer;
     let handles = match Shaft::between(occluders, (a.polygon, a.facet), (b.polygon, b.facet)) {
         Shaft::Clear => return Visibility::Full,
         Shaft::Blocked => return Visibility::None,
         Shaft::Undecided(handles) => handles,
     };
     if let Occlusion::Exact { tolerance } = occlusion {
-        let shapes: Vec<&[Vec3]> = handles.iter().map(|handle| occluders.corners_of(*handle)).collect();
         let tolerance = tolerance * a.etendue.min(b.etendue);
-        let (blocked, error) = shadow::blocked(a.polygon, b.polygon, &shapes, tolerance);
-        return Visibility::Integrated { blocked, error };
+        return match desk.shadow(&obstacles.bodies, a.polygon, b.polygon, &handles, tolerance) {
+            Shadow::Clear => Visibility::Full,
+            Shadow::Total => Visibility::None,
+            Shadow::Partial { blocked, error } => Visibility::Integrated { blocked, error },
+        };
     }
     let points = Kronecker::<4>::new(mix(&[key]));
     let (mut through, mut total, mut squares) = (0.0, 0.0, 0.0);

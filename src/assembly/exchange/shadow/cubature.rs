@@ -18,7 +18,16 @@ const SLOWEST: f64 = 0.5;
 const DOUBT: f64 = 4.0;
 
 /// Points a pair may cost.
-const MOST_POINTS: usize = 200_000;
+const MOST_POINTS: usize = 100_000;
+
+/// What an integrand is like on a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Nature {
+    /// Analytic, up to singularities at this distance from the centre in units of the cell's radius.
+    Smooth { reach: f64 },
+    /// Its second derivative may jump on some curve.
+    Kinked,
+}
 
 /// A bilinear quadrilateral (two corners may coincide) and what is known about the integral over it.
 #[derive(Clone, Copy, Debug)]
@@ -26,8 +35,7 @@ pub struct Cell {
     corners: [Vec3; 4],
     /// Which integrand.
     pub term: usize,
-    /// Whether the integrand is known to be smooth on it.
-    pub is_smooth: bool,
+    is_kinked: bool,
     rung: usize,
     value: f64,
     /// By how much the error falls from a rule of n to one of n + 1 points an axis.
@@ -39,33 +47,29 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// `clearance(x)` is the distance of x from the nearest singularity of the integrand.
-    fn new(corners: [Vec3; 4], term: usize, is_smooth: bool, clearance: &impl Fn(usize, Vec3) -> f64) -> Self {
-        let mut cell = Self { corners, term, is_smooth, rung: 0, value: 0.0, decay: SLOWEST, envelope: 0.0, change: 0.0, error: 0.0 };
-        if is_smooth {
+    /// A cell of that nature.
+    fn new(corners: [Vec3; 4], term: usize, nature: Nature) -> Self {
+        let is_kinked = nature == Nature::Kinked;
+        let decay = match nature {
             // Gauss rules converge as ρ^(−2n), ρ the sum of the axes of the ellipse about ±1 that reaches the singularity.
-            let centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
-            let radius = corners.iter().map(|v| v.distance_squared(centre)).fold(0.0, f64::max).sqrt();
-            let reach = clearance(term, centre) / radius;
-            if reach > 1.0 {
-                cell.decay = (reach - (reach * reach - 1.0).sqrt()).powi(2).min(SLOWEST);
-            }
-        }
-        cell
+            Nature::Smooth { reach } if reach > 1.0 => (reach - (reach * reach - 1.0).sqrt()).powi(2).min(SLOWEST),
+            _ => SLOWEST,
+        };
+        Self { corners, term, is_kinked, rung: 0, value: 0.0, decay, envelope: 0.0, change: 0.0, error: 0.0 }
     }
 
     /// Covers a convex polygon.
     pub fn cover(
         polygon: &[Vec3],
         term: usize,
-        is_smooth: bool,
-        clearance: &impl Fn(usize, Vec3) -> f64,
+        nature: &impl Fn(usize, &[Vec3; 4]) -> Nature,
         into: &mut Vec<Self>,
     ) {
         let mut k = 1;
         while k + 1 < polygon.len() {
             let last = polygon.get(k + 2).copied().unwrap_or(polygon[0]);
-            into.push(Self::new([polygon[0], polygon[k], polygon[k + 1], last], term, is_smooth, clearance));
+            let corners = [polygon[0], polygon[k], polygon[k + 1], last];
+            into.push(Self::new(corners, term, nature(term, &corners)));
             k += 2;
         }
     }
@@ -75,8 +79,10 @@ impl Cell {
         (self.value, _) = self.apply(normal, 0, integrand);
         *n_points += 1;
         self.climb(normal, n_points, integrand);
-        if !self.is_smooth {
+        if self.is_kinked {
             self.climb(normal, n_points, integrand);
+            self.error = self.error.max(self.overshoot(normal, integrand));
+            *n_points += 4;
         }
     }
 
@@ -101,9 +107,36 @@ impl Cell {
         *n_points += LADDER[rung] * LADDER[rung];
     }
 
+    /// How far the corners lie off the parabola through the values of the three-point rule, times the area: shows kinks that lie beyond
+    /// all its nodes.
+    fn overshoot(&self, normal: Vec3, integrand: &mut impl FnMut(usize, Vec3) -> f64) -> f64 {
+        let [a, b, c, d] = self.corners;
+        let rule = &RULES[2];
+        let point = |s: f64, t: f64| (1.0 - s) * (1.0 - t) * a + s * (1.0 - t) * b + s * t * c + (1.0 - s) * t * d;
+        let mut values = [[0.0; 3]; 3];
+        for (row, t) in values.iter_mut().zip(&rule.nodes) {
+            for (value, s) in row.iter_mut().zip(&rule.nodes) {
+                *value = integrand(self.term, point(*s, *t));
+            }
+        }
+        // Lagrange's weights at either end of [0, 1].
+        let [x, y, z] = [rule.nodes[0], rule.nodes[1], rule.nodes[2]];
+        let weights = |s: f64| {
+            [(s - y) * (s - z) / ((x - y) * (x - z)), (s - x) * (s - z) / ((y - x) * (y - z)), (s - x) * (s - y) / ((z - x) * (z - y))]
+        };
+        let mut worst: f64 = 0.0;
+        for (s, t) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
+            let (across, along) = (weights(t), weights(s));
+            let expected: f64 = (0..3).map(|k| across[k] * (0..3).map(|l| along[l] * values[k][l]).sum::<f64>()).sum();
+            worst = worst.max((integrand(self.term, point(s, t)) - expected).abs());
+        }
+        let area = 0.5 * (c - a).cross(d - b).dot(normal).abs();
+        0.1 * worst * area
+    }
+
     /// True where smaller cells promise more than longer rules.
     fn wants_quarters(&self) -> bool {
-        self.rung + 1 == LADDER.len() || (self.decay > 0.3 && self.rung >= 3)
+        self.is_kinked || self.rung + 1 == LADDER.len() || (self.decay > 0.3 && self.rung >= 3)
     }
 
     /// The integral by one rule, and the difference of the largest and the smallest value times the area.
@@ -150,7 +183,7 @@ pub fn integrate(
     cells: &mut Vec<Cell>,
     normal: Vec3,
     tolerance: f64,
-    clearance: &impl Fn(usize, Vec3) -> f64,
+    nature: &impl Fn(usize, &[Vec3; 4]) -> Nature,
     mut integrand: impl FnMut(usize, Vec3) -> f64,
 ) -> Sum {
     let mut n_points = 0;
@@ -169,7 +202,7 @@ pub fn integrate(
             if cells[k].wants_quarters() {
                 let cell = cells.swap_remove(k);
                 for corners in cell.quarters() {
-                    let mut part = Cell::new(corners, cell.term, cell.is_smooth, clearance);
+                    let mut part = Cell::new(corners, cell.term, nature(cell.term, &corners));
                     part.begin(normal, &mut n_points, &mut integrand);
                     cells.push(part);
                 }

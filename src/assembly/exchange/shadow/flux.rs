@@ -18,6 +18,8 @@ const FLAT: f64 = 4e-15;
 pub struct Edge {
     pub from: Vec3,
     pub to: Vec3,
+    /// Number of the outline it is part of.
+    pub owner: usize,
 }
 
 impl Edge {

@@ -28,7 +28,7 @@ pub use bodies::Bodies;
 use crate::geometry::{Polygon, Vec3};
 use body::{Body, Lie, Plane};
 use cells::{Line, Pieces};
-use cubature::Cell;
+use cubature::{Cell, Nature};
 use flux::{Edge, Scratch};
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -56,6 +56,8 @@ struct Term {
     sign: f64,
     target: Range<usize>,
     edges: Range<usize>,
+    /// False if it bends on more lines than cells were cut along.
+    is_cut: bool,
 }
 
 /// Room to work in, kept between pairs so that none of them allocates.
@@ -154,17 +156,15 @@ impl Desk {
 
         let Self { cells, terms, targets, active, scratch, .. } = self;
         self.n_cells += cells.len();
-        let clearance = |term: usize, x: Vec3| {
-            let Term { target, edges, .. } = &terms[term];
-            clearance(x, &targets[target.clone()], &active[edges.clone()])
+        let nature = |term: usize, corners: &[Vec3; 4]| {
+            let Term { target, edges, is_cut, .. } = &terms[term];
+            nature(corners, &targets[target.clone()], &active[edges.clone()], *is_cut)
         };
-        let sum = cubature::integrate(cells, floor.normal, tolerance / PI, &clearance, |term, x| {
-            let Term { sign, target, edges } = &terms[term];
+        let sum = cubature::integrate(cells, floor.normal, tolerance / PI, &nature, |term, x| {
+            let Term { sign, target, edges, .. } = &terms[term];
             sign * flux::hidden(x, floor.normal, &targets[target.clone()], &active[edges.clone()], scratch)
         });
         self.n_points += sum.n_points;
-        if std::env::var("DUMP").is_ok() { println!("  terms {} cells {} nonsmooth {} points {} err {:e}", terms.len(), cells.len(), cells.iter().filter(|c| !c.is_smooth).count(), sum.n_points, sum.error);
-            for (k,t) in terms.iter().enumerate() { println!("    term {k} sign {} target {} edges {} cells {}", t.sign, t.target.len(), t.edges.len(), cells.iter().filter(|c| c.term==k).count()); } }
         Shadow::Partial { blocked: PI * sum.value.max(0.0), error: PI * sum.error }
     }
 
@@ -234,10 +234,11 @@ impl Desk {
         if body.opening.is_some_and(|opening| self.is_front[opening]) && !reaches_out() {
             return false;
         }
+        let owner = self.outlines.len();
         for rim in &body.rims {
             match rim.faces.map(|face| self.is_front[face as usize]) {
-                [true, false] => self.edges.push(Edge { from: rim.to, to: rim.from }),
-                [false, true] => self.edges.push(Edge { from: rim.from, to: rim.to }),
+                [true, false] => self.edges.push(Edge { from: rim.to, to: rim.from, owner }),
+                [false, true] => self.edges.push(Edge { from: rim.from, to: rim.to, owner }),
                 _ => {}
             }
         }
@@ -270,7 +271,7 @@ impl Desk {
                 self.is_total = true;
                 return;
             }
-            self.terms.push(Term { sign, target: target.clone(), edges: active.clone() });
+            self.terms.push(Term { sign, target: target.clone(), edges: active.clone(), is_cut: true });
             self.cut_into_cells(part);
             self.chain.push(k);
             self.add_union(part, target, active, -sign, k, false);
@@ -342,11 +343,12 @@ impl Desk {
             }
             std::mem::swap(pieces, spare);
         }
-        let is_smooth = self.chain.is_empty() && lines.len() <= MOST_LINES;
-        let clearance = |_: usize, x: Vec3| clearance(x, target, edges);
+        let is_cut = lines.len() <= MOST_LINES;
+        let nature = |_: usize, corners: &[Vec3; 4]| nature(corners, target, edges, is_cut);
         for piece in pieces.iter() {
-            Cell::cover(piece, number, is_smooth, &clearance, cells);
+            Cell::cover(piece, number, &nature, cells);
         }
+        terms[number].is_cut = is_cut;
     }
 }
 
@@ -364,6 +366,21 @@ fn front(polygon: &[Vec3], plane: &Plane) -> Option<Vec<Vec3>> {
             half.iter().next().map(<[Vec3]>::to_vec)
         }
     }
+}
+
+/// What the integrand of a term is like on a cell with these corners.
+fn nature(corners: &[Vec3; 4], target: &[Vec3], edges: &[Edge], is_cut: bool) -> Nature {
+    let centre = corners.iter().copied().sum::<Vec3>() / corners.len() as f64;
+    if !is_cut {
+        return Nature::Kinked;
+    }
+    if edges.len() > 1 {
+        if events::is_kinked(*corners, target, edges) {
+            return Nature::Kinked;
+        }
+    }
+    let radius = corners.iter().map(|v| v.distance_squared(centre)).fold(0.0, f64::max).sqrt();
+    Nature::Smooth { reach: clearance(centre, target, edges) / radius }
 }
 
 /// Distance of a point from whatever makes F(x → target ∩ hidden sides) singular: the edges' lines and the sides of the target.
