@@ -24,8 +24,8 @@ use crate::sampling::mix;
 use crate::scene::Scene;
 use quadrature::{Ladder, Nodes};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use shadow::Desk;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use visibility::{End, Obstacles, Visibility};
 
 /// How exchange is computed: accuracy is the caller's choice, and every number here enters the provenance of the result.

@@ -222,7 +222,10 @@ fn weld(polygons: &[&Polygon]) -> Vec<Vec<Vec3>> {
     let mut place = |v: Vec3| {
         let sign = |octant: u32, axis: u32| if octant >> axis & 1 == 0 { grain } else { -grain };
         let reached = (0..8).map(|o| cell(v + Vec3::new(sign(o, 0), sign(o, 1), sign(o, 2))));
-        let found = reached.filter_map(|cell| known.get(&cell)).find(|other| (**other - v).abs().max_element() <= grain).copied();
+        let found = reached
+            .filter_map(|cell| known.get(&cell))
+            .find(|other| (**other - v).abs().max_element() <= grain)
+            .copied();
         found.unwrap_or_else(|| {
             known.insert(cell(v), v);
             v

@@ -59,12 +59,7 @@ impl Cell {
     }
 
     /// Covers a convex polygon.
-    pub fn cover(
-        polygon: &[Vec3],
-        term: usize,
-        nature: &impl Fn(usize, &[Vec3; 4]) -> Nature,
-        into: &mut Vec<Self>,
-    ) {
+    pub fn cover(polygon: &[Vec3], term: usize, nature: &impl Fn(usize, &[Vec3; 4]) -> Nature, into: &mut Vec<Self>) {
         let mut k = 1;
         while k + 1 < polygon.len() {
             let last = polygon.get(k + 2).copied().unwrap_or(polygon[0]);
@@ -122,7 +117,11 @@ impl Cell {
         // Lagrange's weights at either end of [0, 1].
         let [x, y, z] = [rule.nodes[0], rule.nodes[1], rule.nodes[2]];
         let weights = |s: f64| {
-            [(s - y) * (s - z) / ((x - y) * (x - z)), (s - x) * (s - z) / ((y - x) * (y - z)), (s - x) * (s - y) / ((z - x) * (z - y))]
+            [
+                (s - y) * (s - z) / ((x - y) * (x - z)),
+                (s - x) * (s - z) / ((y - x) * (y - z)),
+                (s - x) * (s - y) / ((z - x) * (z - y)),
+            ]
         };
         let mut worst: f64 = 0.0;
         for (s, t) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
@@ -198,7 +197,10 @@ pub fn integrate(
         }
         // Refine the worst, and where cells are many all that are nearly as bad.
         let bar = if cells.len() > 16 { 0.25 * worst } else { worst };
-        for k in (0..cells.len()).rev().filter(|k| cells[*k].error >= bar).collect::<Vec<_>>() {
+        for k in (0..cells.len()).rev() {
+            if cells[k].error < bar {
+                continue;
+            }
             if cells[k].wants_quarters() {
                 let cell = cells.swap_remove(k);
                 for corners in cell.quarters() {
