@@ -25,7 +25,11 @@ fn main() {
         let report = system.report();
         let (n, shafts) = (bundles.n_bundles() as f64, report.n_shafts as f64);
         let by_clusters = 100.0 * report.n_by_clusters as f64 / (0.5 * n * (n - 1.0));
-        print!("{n:7} {seconds:9.2} {:8.1} {shafts:8.0} {:12.4} {by_clusters:10.1} %", 1e9 * seconds / (n * n), shafts / (n * n));
+        print!(
+            "{n:7} {seconds:9.2} {:8.1} {shafts:8.0} {:12.4} {by_clusters:10.1} %",
+            1e9 * seconds / (n * n),
+            shafts / (n * n)
+        );
         if let Some([n_before, seconds_before, shafts_before]) = last {
             let power = |now: f64, before: f64| (now / before).ln() / (n / n_before).ln();
             print!("   {:.2}, {:.2}", power(seconds, seconds_before), power(shafts, shafts_before));

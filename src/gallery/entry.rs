@@ -1,8 +1,8 @@
 //! The catalogue: every scene with its parameters filled in, by name.
 
 use super::{
-    Exact, cornell_box, corner_box, furnace_cube, furnace_exact, furnace_sphere, parallel_plates, spherical_crater,
-    two_rooms,
+    Exact, cornell_box, corner_box, floating_block, furnace_cube, furnace_exact, furnace_sphere, parallel_plates,
+    spherical_crater, two_rooms,
 };
 use crate::scene::Scene;
 
@@ -24,7 +24,7 @@ pub struct Entry {
 /// Further than this many edits away, a name is not what was meant.
 const FURTHEST_SUGGESTION: usize = 2;
 
-static ENTRIES: [Entry; 7] = [
+static ENTRIES: [Entry; 8] = [
     Entry {
         name: "furnace-cube",
         summary: "closed unit cube of one albedo and emission; L = e/(1 - a) everywhere",
@@ -64,6 +64,14 @@ static ENTRIES: [Entry; 7] = [
         summary: "closed box under a glowing ceiling with a turned block in it; exact energy balance",
         build: corner_box::corner_box,
         exact: || Some(corner_box::corner_box_exact()),
+        patch_size: 0.1,
+        closed: true,
+    },
+    Entry {
+        name: "floating-block",
+        summary: "closed cube under a glowing ceiling with a turned block hanging in it; exact energy balance",
+        build: || floating_block::floating_block(1).expect("one facet a face is valid"),
+        exact: || Some(floating_block::floating_block_exact()),
         patch_size: 0.1,
         closed: true,
     },

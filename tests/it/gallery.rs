@@ -44,6 +44,10 @@ fn probes(name: &str) -> (Vec<Vec3>, Vec<Vec3>) {
             points(&[[0.1, 0.1, 0.1], [0.45, 0.46, 0.55], [0.7, 0.02, 0.4]]),
             points(&[[0.45, 0.2, 0.55], [0.6, 0.01, 0.6], [0.45, -0.1, 0.55], [0.5, 0.9, 0.5]]),
         ),
+        "floating-block" => (
+            points(&[[0.1, 0.1, 0.1], [0.45, 0.5, 0.02], [0.45, 0.5, 0.62], [0.95, 0.05, 0.8]]),
+            points(&[[0.45, 0.5, 0.325], [0.55, 0.6, 0.06], [0.45, 0.5, -0.1], [1.2, 0.5, 0.5]]),
+        ),
         "two-rooms" => (
             points(&[[1.5, 2.4, 1.5], [3.0, 0.6, 1.5], [6.0, 1.0, 2.0]]),
             points(&[[-0.1, 1.0, 1.0], [1.5, 2.6, 1.5], [7.1, 1.0, 1.0]]),
@@ -154,7 +158,7 @@ fn closed_scenes_surround_the_air_and_nothing_else() {
             assert!(seen.abs() < SUM_ROUNDING * 4.0 * PI, "{} from {eye}: {seen}", entry.name);
         }
     }
-    assert_eq!(closed().count(), 4);
+    assert_eq!(closed().count(), 5);
 }
 
 #[test]
@@ -170,7 +174,7 @@ fn normals_of_closed_scenes_balance() {
 
 #[test]
 fn polyhedra_share_their_edges_bit_for_bit() {
-    for name in ["furnace-cube", "furnace-sphere", "corner-box"] {
+    for name in ["furnace-cube", "furnace-sphere", "corner-box", "floating-block"] {
         let scene = (gallery::find(name).unwrap().build)();
         assert_eq!(open_edges(&scene), [], "{name}");
     }
@@ -248,6 +252,19 @@ fn the_block_stands_on_the_floor_and_is_turned() {
     let axes = [Vec3::X, Vec3::Z];
     let sides = surface("block").polygons.iter().map(|p| p.normal()).filter(|n| n.y.abs() < 0.5);
     assert!(sides.clone().count() == 4 && sides.clone().all(|n| axes.iter().all(|a| n.dot(*a).abs() > 0.4)));
+}
+
+/// The race's numbers: facets, areas, and the same closed surface at any cut.
+#[test]
+fn the_floating_block_is_cut_without_a_seam() {
+    for (n, n_facets) in [(1, 12), (4, 102), (10, 654), (16, 1_686)] {
+        let scene = gallery::floating_block(n).unwrap();
+        assert_eq!(scene.facets().len(), n_facets);
+        assert_eq!(open_edges(&scene), [], "{n}");
+        let block = scene.surfaces().iter().find(|s| s.name == "block").unwrap();
+        assert!((block.area() - (2.0 * 0.09 + 4.0 * 0.3 * 0.55)).abs() < SUM_ROUNDING);
+    }
+    assert!(gallery::floating_block(0).is_err());
 }
 
 #[test]

@@ -42,6 +42,7 @@ pub fn coarse() -> &'static [Case] {
             "cornell-box" => 0.5,
             "parallel-plates" => 0.125,
             "corner-box" => 0.25,
+            "floating-block" => 0.25,
             "two-rooms" => 1.0,
             "spherical-crater" => 0.5,
             other => panic!("no coarse patch size for '{other}'"),

@@ -1,12 +1,12 @@
 //! Exchange between orbits of bundles, only between those that are asked for.
 
 use super::quadrature::{self, Ladder, Nodes};
-use super::shadow::{Bodies, Desk};
-use super::visibility::{self, End, Visibility};
+use super::shadow::Desk;
+use super::visibility::{self, End, Obstacles, Visibility};
 use super::{Assembled, Exchange, ExchangeReport, Occlusion};
 use crate::assembly::orbits::Orbits;
 use crate::basis::{Bundles, Patch};
-use crate::geometry::{Polygon, Tracer};
+use crate::geometry::Polygon;
 use crate::linalg::{Block, Matrix};
 use crate::sampling::mix;
 use crate::scene::Scene;
@@ -41,7 +41,8 @@ pub(in crate::assembly) fn compute(
     settings: Exchange,
 ) -> (Assembled, Vec<f64>) {
     let polygons: Vec<&Polygon> = (0..scene.facets().len()).map(|facet| scene.polygon(facet)).collect();
-    let occluders = Tracer::occluders(&polygons);
+    let obstacles = Obstacles::new(&polygons);
+    let occluders = &obstacles.tracer;
     let patches: Vec<&Patch> = (0..bundles.elements().len()).filter_map(|e| bundles.patch(e)).collect();
     let etendue = bundles.etendue();
     let n = orbits.n_orbits();
@@ -58,7 +59,6 @@ pub(in crate::assembly) fn compute(
         .map(|(k, patch)| orbits.orbit_of(k).filter(|i| takes_part[*i]).map(|_| ladder.nodes(&patch.polygon)))
         .collect();
 
-    let bodies = Bodies::new(&occluders, &polygons);
     let pair = |desk: &mut Desk, i: usize, j: usize| -> Option<Sum> {
         let (a, b) = (patches[i], patches[j]);
         if i == j || occluders.coplanar(a.facet, b.facet) {
@@ -76,7 +76,7 @@ pub(in crate::assembly) fn compute(
             sampled => sampled,
         };
         let key = mix(&[settings.seed, 0, i as u64, j as u64]);
-        match visibility::between(desk, (&occluders, &bodies), None, ends, occlusion, settings.visibility_rays, key) {
+        match visibility::between(&obstacles, desk, None, ends, occlusion, settings.visibility_rays, key) {
             Visibility::Full => (sum.value, sum.error, sum.n_clear) = (exchange, error, 1),
             Visibility::None => sum.n_hidden = 1,
             Visibility::Integrated { blocked, error: estimate } => {

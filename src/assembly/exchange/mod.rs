@@ -42,10 +42,10 @@ use crate::scene::Scene;
 use cluster::{Clusters, View};
 use quadrature::{Ladder, Nodes};
 use rayon::prelude::*;
-use shadow::{Bodies, Desk};
+use shadow::Desk;
 use sinks::{Lost, Sink};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use visibility::{End, Visibility};
+use visibility::{End, Obstacles, Visibility};
 
 /// How exchange is computed: accuracy is the caller's choice, and every number here enters the provenance of the result.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -165,8 +165,7 @@ pub(super) fn compute(
         Occlusion::Exact { .. } => sinks::of_scene(scene, &facets),
     };
     let planes: Vec<&Polygon> = facets.iter().copied().chain(sinks.iter().filter_map(Sink::opening)).collect();
-    let occluders = Tracer::occluders(&planes);
-    let bodies = Bodies::new(&occluders, &planes);
+    let obstacles = Obstacles::new(&planes);
     let patches = (0..bundles.elements().len()).filter_map(|e| bundles.patch(e));
     let mut ends: Vec<End> = patches.map(|patch| End::new(&patch.polygon, patch.facet)).collect();
     let n = ends.len();
@@ -174,18 +173,11 @@ pub(super) fn compute(
     let etendue = bundles.etendue();
     let ladder = Ladder::new();
     let nodes: Vec<Nodes> = ends.par_iter().map(|end| ladder.nodes(end.polygon)).collect();
-    let clusters = Clusters::new(&ends, n, &planes, &occluders);
+    let clusters = Clusters::new(&ends, n, &planes, &obstacles.tracer);
 
     // Visit the upper triangle row by row; long rows first, so that threads finish together.
-    let parts = Parts {
-        ends: &ends,
-        n_sources: n,
-        ladder: &ladder,
-        nodes: &nodes,
-        clusters: &clusters,
-        occluders: &occluders,
-        bodies: &bodies,
-    };
+    let parts =
+        Parts { ends: &ends, n_sources: n, ladder: &ladder, nodes: &nodes, clusters: &clusters, obstacles: &obstacles };
     let done = AtomicUsize::new(0);
     let rows: Vec<Row> = (0..n)
         .into_par_iter()
@@ -276,8 +268,7 @@ struct Parts<'a> {
     ladder: &'a Ladder,
     nodes: &'a [Nodes],
     clusters: &'a Clusters,
-    occluders: &'a Tracer,
-    bodies: &'a Bodies,
+    obstacles: &'a Obstacles,
 }
 
 impl Parts<'_> {
@@ -323,8 +314,8 @@ impl Parts<'_> {
         let View::Open(candidates) = view else { return Visibility::Full };
         let key = mix(&[settings.seed, 0, i as u64, j as u64]);
         let ends = [self.ends[i], self.ends[j]];
-        let scene = (self.occluders, self.bodies);
-        visibility::between(desk, scene, Some(candidates), ends, settings.occlusion, settings.visibility_rays, key)
+        let (candidates, n_rays) = (Some(&candidates[..]), settings.visibility_rays);
+        visibility::between(self.obstacles, desk, candidates, ends, settings.occlusion, n_rays, key)
     }
 }
 

@@ -35,20 +35,38 @@ impl<'a> End<'a> {
     }
 }
 
+/// What may stand between patches: single polygons for rays, whole bodies for shadows.
+pub struct Obstacles {
+    pub tracer: Tracer,
+    bodies: Bodies,
+}
+
+impl Obstacles {
+    /// Builds the tree and joins facets into bodies. Cost O(n log n) for scenes of bodies of bounded size.
+    pub fn new(polygons: &[&Polygon]) -> Self {
+        let tracer = Tracer::occluders(polygons);
+        let bodies = Bodies::new(&tracer, polygons);
+        Self { tracer, bodies }
+    }
+}
+
 /// Classifies the pair among these candidates, `None` standing for all, and where that does not settle it integrates what is blocked, or casts `n_rays` between points spread
 /// evenly over both.
 ///
 /// The share is Σ k V / Σ k, k the kernel cosθ cosθ'/r² of each ray and V whether it gets through. Its variance is that of the
 /// weighted mean with half a ray added to each outcome, so that no finite number of rays claims certainty.
+///
+/// `desk` is room to work in, and leaves no trace in the result.
 pub fn between(
+    obstacles: &Obstacles,
     desk: &mut Desk,
-    (occluders, bodies): (&Tracer, &Bodies),
     candidates: Option<&[u32]>,
     [a, b]: [End; 2],
     occlusion: Occlusion,
     n_rays: usize,
     key: u64,
 ) -> Visibility {
+    let occluders = &obstacles.tracer;
     let (one, other) = ((a.polygon, a.facet), (b.polygon, b.facet));
     let shaft = match candidates {
         None => Shaft::between(occluders, one, other),
@@ -61,7 +79,7 @@ pub fn between(
     };
     if let Occlusion::Exact { tolerance } = occlusion {
         let tolerance = tolerance * a.etendue.min(b.etendue);
-        return match desk.shadow(bodies, a.polygon, b.polygon, &handles, tolerance) {
+        return match desk.shadow(&obstacles.bodies, a.polygon, b.polygon, &handles, tolerance) {
             Shadow::Clear => Visibility::Full,
             Shadow::Total => Visibility::None,
             Shadow::Partial { blocked, error } => Visibility::Integrated { blocked, error },

@@ -74,14 +74,14 @@ struct Joints<'a> {
 impl<'a> Joints<'a> {
     fn of(polygons: &'a [&'a Polygon]) -> Self {
         // Look up every edge run the other way.
-        let bits = |v: Vec3| v.to_array().map(|x| (x + 0.0).to_bits());
-        let edges = |p: &'a Polygon| {
-            let v = p.vertices();
+        let welded = weld(polygons);
+        let edges = |facet: usize| {
+            let v: &[Vec3] = &welded[facet];
             (0..v.len()).map(move |k| (v[k], v[(k + 1) % v.len()]))
         };
         let mut run: HashMap<_, (usize, usize)> = HashMap::new();
-        for (facet, polygon) in polygons.iter().enumerate() {
-            for (from, to) in edges(polygon) {
+        for facet in 0..polygons.len() {
+            for (from, to) in edges(facet) {
                 run.entry((bits(from), bits(to))).and_modify(|entry| entry.1 += 1).or_insert((facet, 1));
             }
         }
@@ -90,7 +90,7 @@ impl<'a> Joints<'a> {
             .iter()
             .enumerate()
             .map(|(facet, polygon)| {
-                edges(polygon)
+                edges(facet)
                     .map(|(from, to)| {
                         let alone = run[&(bits(from), bits(to))].1 == 1;
                         let other = run.get(&(bits(to), bits(from))).filter(|(other, count)| {
@@ -170,7 +170,7 @@ impl<'a> Joints<'a> {
             }
         }
         let mut corners: Vec<Vec3> =
-            members.iter().flat_map(|&facet| self.polygons[facet].vertices()).copied().collect();
+            members.iter().flat_map(|&facet| self.sides[facet].iter().map(|side| side.from)).collect();
         corners.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).unwrap_or(std::cmp::Ordering::Equal));
         corners.dedup();
 
@@ -212,9 +212,35 @@ impl<'a> Joints<'a> {
     }
 }
 
+/// Corners of every polygon, those moved together that differ by rounding alone.
+fn weld(polygons: &[&Polygon]) -> Vec<Vec<Vec3>> {
+    let corners = || polygons.iter().flat_map(|p| p.vertices());
+    let grain = 64.0 * f64::EPSILON * corners().map(|v| v.abs().max_element()).fold(f64::MIN_POSITIVE, f64::max);
+    // Look for a known corner in the grid cell of this one and in those that rounding could have moved it to.
+    let cell = |v: Vec3| (v / (4.0 * grain)).round().to_array().map(|x| x as i64);
+    let mut known: HashMap<[i64; 3], Vec3> = HashMap::new();
+    let mut place = |v: Vec3| {
+        let sign = |octant: u32, axis: u32| if octant >> axis & 1 == 0 { grain } else { -grain };
+        let reached = (0..8).map(|o| cell(v + Vec3::new(sign(o, 0), sign(o, 1), sign(o, 2))));
+        let found = reached
+            .filter_map(|cell| known.get(&cell))
+            .find(|other| (**other - v).abs().max_element() <= grain)
+            .copied();
+        found.unwrap_or_else(|| {
+            known.insert(cell(v), v);
+            v
+        })
+    };
+    polygons.iter().map(|p| p.vertices().iter().map(|v| place(*v)).collect()).collect()
+}
+
+/// The bits of a point's coordinates, of one zero.
+fn bits(v: Vec3) -> [u64; 3] {
+    v.to_array().map(|x| (x + 0.0).to_bits())
+}
+
 /// The one loop that these edges make, if they do.
 fn walk(edges: &[Rim]) -> Option<Vec<Vec3>> {
-    let bits = |v: Vec3| v.to_array().map(|x| (x + 0.0).to_bits());
     let next: HashMap<_, Vec3> = edges.iter().map(|edge| (bits(edge.from), edge.to)).collect();
     if next.len() != edges.len() {
         return None;

@@ -18,10 +18,6 @@ impl Pieces {
         self.ends.clear();
     }
 
-    pub fn len(&self) -> usize {
-        self.ends.len()
-    }
-
     pub fn push(&mut self, corner: Vec3) {
         self.corners.push(corner);
     }

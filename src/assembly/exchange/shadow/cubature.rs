@@ -9,12 +9,25 @@ const LADDER: [usize; 8] = [1, 2, 3, 4, 6, 8, 12, 16];
 
 static RULES: LazyLock<[Rule; LADDER.len()]> = LazyLock::new(|| LADDER.map(gauss_legendre));
 
-/// Of a function that is smooth on a cell, differences of successive rules fall geometrically. What is left after the last is at
-/// most this many times what that predicts.
-const CAUTION: f64 = 4.0;
+/// What the estimate of a smooth cell is multiplied with: constants that the rate of convergence leaves open.
+const CAUTION: f64 = 8.0;
+
+/// Where the error falls no faster than this, cells that touch a singularity or hold kinks, the change from rule to rule is all there is to
+/// go by, times the doubt.
+const SLOWEST: f64 = 0.5;
+const DOUBT: f64 = 4.0;
 
 /// Points a pair may cost.
-const MOST_POINTS: usize = 2_000_000;
+const MOST_POINTS: usize = 100_000;
+
+/// What an integrand is like on a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Nature {
+    /// Analytic, up to singularities at this distance from the centre in units of the cell's radius.
+    Smooth { reach: f64 },
+    /// Its second derivative may jump on some curve.
+    Kinked,
+}
 
 /// A bilinear quadrilateral (two corners may coincide) and what is known about the integral over it.
 #[derive(Clone, Copy, Debug)]
@@ -22,78 +35,128 @@ pub struct Cell {
     corners: [Vec3; 4],
     /// Which integrand.
     pub term: usize,
-    /// Whether the integrand is known to be smooth on it.
-    pub is_smooth: bool,
+    is_kinked: bool,
     rung: usize,
     value: f64,
+    /// By how much the error falls from a rule of n to one of n + 1 points an axis.
+    decay: f64,
+    /// Error of the last rule, were the constants one.
+    envelope: f64,
     change: f64,
-    /// Of this change to the one before.
-    ratio: f64,
     error: f64,
 }
 
 impl Cell {
-    fn new(corners: [Vec3; 4], term: usize, is_smooth: bool) -> Self {
-        Self { corners, term, is_smooth, rung: 0, value: 0.0, change: 0.0, ratio: 1.0, error: 0.0 }
+    /// A cell of that nature.
+    fn new(corners: [Vec3; 4], term: usize, nature: Nature) -> Self {
+        let is_kinked = nature == Nature::Kinked;
+        let decay = match nature {
+            // Gauss rules converge as ρ^(−2n), ρ the sum of the axes of the ellipse about ±1 that reaches the singularity.
+            Nature::Smooth { reach } if reach > 1.0 => (reach - (reach * reach - 1.0).sqrt()).powi(2).min(SLOWEST),
+            _ => SLOWEST,
+        };
+        Self { corners, term, is_kinked, rung: 0, value: 0.0, decay, envelope: 0.0, change: 0.0, error: 0.0 }
     }
 
     /// Covers a convex polygon.
-    pub fn cover(polygon: &[Vec3], term: usize, is_smooth: bool, into: &mut Vec<Self>) {
+    pub fn cover(polygon: &[Vec3], term: usize, nature: &impl Fn(usize, &[Vec3; 4]) -> Nature, into: &mut Vec<Self>) {
         let mut k = 1;
         while k + 1 < polygon.len() {
             let last = polygon.get(k + 2).copied().unwrap_or(polygon[0]);
-            into.push(Self::new([polygon[0], polygon[k], polygon[k + 1], last], term, is_smooth));
+            let corners = [polygon[0], polygon[k], polygon[k + 1], last];
+            into.push(Self::new(corners, term, nature(term, &corners)));
             k += 2;
         }
     }
 
     /// The first two rules; a third where kinks can hide from them.
     fn begin(&mut self, normal: Vec3, n_points: &mut usize, integrand: &mut impl FnMut(usize, Vec3) -> f64) {
-        let term = self.term;
-        self.value = self.apply(normal, 0, |x| integrand(term, x));
+        (self.value, _) = self.apply(normal, 0, integrand);
         *n_points += 1;
         self.climb(normal, n_points, integrand);
-        if !self.is_smooth {
+        if self.is_kinked {
             self.climb(normal, n_points, integrand);
+            self.error = self.error.max(self.overshoot(normal, integrand));
+            *n_points += 4;
         }
     }
 
     /// The next rule.
     fn climb(&mut self, normal: Vec3, n_points: &mut usize, integrand: &mut impl FnMut(usize, Vec3) -> f64) {
-        let term = self.term;
         let rung = self.rung + 1;
-        let value = self.apply(normal, rung, |x| integrand(term, x));
+        let (value, spread) = self.apply(normal, rung, integrand);
         let change = (value - self.value).abs();
-        let is_settling = self.is_smooth && rung > 1 && change < self.change;
-        self.ratio = if self.change > 0.0 { change / self.change } else { 0.0 };
-        self.error = if is_settling { change * (CAUTION * self.ratio).min(1.0) } else { change };
-        (self.rung, self.value, self.change) = (rung, value, change);
+        let steps = (LADDER[rung] - LADDER[self.rung]) as i32;
+        // One point is off by the second differences, which may cancel in the sum: the first ones do not.
+        if rung == 1 {
+            self.envelope = spread * self.decay.sqrt();
+        }
+        self.envelope = change.max(self.envelope) * self.decay.powi(steps);
+        if self.decay < SLOWEST {
+            self.error = CAUTION * self.envelope;
+        } else {
+            self.error = DOUBT * change.max(0.5 * self.change);
+        }
+        self.change = if rung == 1 { change.max(0.4 * spread) } else { change };
+        (self.rung, self.value) = (rung, value);
         *n_points += LADDER[rung] * LADDER[rung];
+    }
+
+    /// How far the corners lie off the parabola through the values of the three-point rule, times the area: shows kinks that lie beyond
+    /// all its nodes.
+    fn overshoot(&self, normal: Vec3, integrand: &mut impl FnMut(usize, Vec3) -> f64) -> f64 {
+        let [a, b, c, d] = self.corners;
+        let rule = &RULES[2];
+        let point = |s: f64, t: f64| (1.0 - s) * (1.0 - t) * a + s * (1.0 - t) * b + s * t * c + (1.0 - s) * t * d;
+        let mut values = [[0.0; 3]; 3];
+        for (row, t) in values.iter_mut().zip(&rule.nodes) {
+            for (value, s) in row.iter_mut().zip(&rule.nodes) {
+                *value = integrand(self.term, point(*s, *t));
+            }
+        }
+        // Lagrange's weights at either end of [0, 1].
+        let [x, y, z] = [rule.nodes[0], rule.nodes[1], rule.nodes[2]];
+        let weights = |s: f64| {
+            [
+                (s - y) * (s - z) / ((x - y) * (x - z)),
+                (s - x) * (s - z) / ((y - x) * (y - z)),
+                (s - x) * (s - y) / ((z - x) * (z - y)),
+            ]
+        };
+        let mut worst: f64 = 0.0;
+        for (s, t) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
+            let (across, along) = (weights(t), weights(s));
+            let expected: f64 = (0..3).map(|k| across[k] * (0..3).map(|l| along[l] * values[k][l]).sum::<f64>()).sum();
+            worst = worst.max((integrand(self.term, point(s, t)) - expected).abs());
+        }
+        let area = 0.5 * (c - a).cross(d - b).dot(normal).abs();
+        0.1 * worst * area
     }
 
     /// True where smaller cells promise more than longer rules.
     fn wants_quarters(&self) -> bool {
-        if self.is_smooth {
-            self.rung + 1 == LADDER.len() || (self.rung >= 4 && self.ratio > 0.2)
-        } else {
-            self.rung >= 3
-        }
+        self.is_kinked || self.rung + 1 == LADDER.len() || (self.decay > 0.3 && self.rung >= 3)
     }
 
-    fn apply(&self, normal: Vec3, rung: usize, mut integrand: impl FnMut(Vec3) -> f64) -> f64 {
+    /// The integral by one rule, and the difference of the largest and the smallest value times the area.
+    fn apply(&self, normal: Vec3, rung: usize, integrand: &mut impl FnMut(usize, Vec3) -> f64) -> (f64, f64) {
         let [a, b, c, d] = self.corners;
         let rule = &RULES[rung];
-        let mut sum = 0.0;
+        let (mut sum, mut area) = (0.0, 0.0);
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for (t, wt) in rule.nodes.iter().zip(&rule.weights) {
-            let (low, high) = (a + *t * (d - a), b + *t * (c - b));
+            let (start, end) = (a + *t * (d - a), b + *t * (c - b));
             let slope = (1.0 - t) * (b - a) + *t * (c - d);
             for (s, ws) in rule.nodes.iter().zip(&rule.weights) {
                 let across = (1.0 - s) * (d - a) + *s * (c - b);
                 let weight = ws * wt * slope.cross(across).dot(normal);
-                sum += weight * integrand(low + *s * (high - low));
+                let value = integrand(self.term, start + *s * (end - start));
+                (low, high) = (low.min(value), high.max(value));
+                sum += weight * value;
+                area += weight;
             }
         }
-        sum
+        (sum, area * (high - low))
     }
 
     fn quarters(&self) -> [[Vec3; 4]; 4] {
@@ -119,6 +182,7 @@ pub fn integrate(
     cells: &mut Vec<Cell>,
     normal: Vec3,
     tolerance: f64,
+    nature: &impl Fn(usize, &[Vec3; 4]) -> Nature,
     mut integrand: impl FnMut(usize, Vec3) -> f64,
 ) -> Sum {
     let mut n_points = 0;
@@ -133,11 +197,14 @@ pub fn integrate(
         }
         // Refine the worst, and where cells are many all that are nearly as bad.
         let bar = if cells.len() > 16 { 0.25 * worst } else { worst };
-        for k in (0..cells.len()).rev().filter(|k| cells[*k].error >= bar).collect::<Vec<_>>() {
+        for k in (0..cells.len()).rev() {
+            if cells[k].error < bar {
+                continue;
+            }
             if cells[k].wants_quarters() {
                 let cell = cells.swap_remove(k);
                 for corners in cell.quarters() {
-                    let mut part = Cell::new(corners, cell.term, cell.is_smooth);
+                    let mut part = Cell::new(corners, cell.term, nature(cell.term, &corners));
                     part.begin(normal, &mut n_points, &mut integrand);
                     cells.push(part);
                 }

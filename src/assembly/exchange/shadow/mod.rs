@@ -28,7 +28,7 @@ pub use bodies::Bodies;
 use crate::geometry::{Polygon, Vec3};
 use body::{Body, Lie, Plane};
 use cells::{Line, Pieces};
-use cubature::Cell;
+use cubature::{Cell, Nature};
 use flux::{Edge, Scratch};
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -56,6 +56,8 @@ struct Term {
     sign: f64,
     target: Range<usize>,
     edges: Range<usize>,
+    /// False if it bends on more lines than cells were cut along.
+    is_cut: bool,
 }
 
 /// Room to work in, kept between pairs so that none of them allocates.
@@ -76,6 +78,7 @@ pub struct Desk {
     spare: Pieces,
     scratch: Scratch,
     is_front: Vec<bool>,
+    stands: [Vec<Vec3>; 2],
     n_target: usize,
     is_total: bool,
     /// Points of quadrature since the desk was made.
@@ -87,7 +90,7 @@ pub struct Desk {
 struct Stage<'a> {
     bodies: &'a Bodies,
     candidates: &'a [u32],
-    /// Plane of the patch stood on.
+    /// Plane of the patch stood on, front up.
     floor: Plane,
     /// Normal of the other one.
     target_normal: Vec3,
@@ -110,29 +113,41 @@ impl Desk {
         if self.bodies.is_empty() {
             return Shadow::Clear;
         }
-        let (Some(on_a), Some(on_b)) = (front(a.vertices(), &planes[1]), front(b.vertices(), &planes[0])) else {
-            return Shadow::Clear;
-        };
-
-        // Stand where the silhouettes change less, and further from what hides.
-        let strain = |polygon: &[Vec3]| {
-            let centre = polygon.iter().copied().sum::<Vec3>() / polygon.len() as f64;
-            let radius = polygon.iter().map(|v| v.distance(centre)).fold(0.0, f64::max);
-            let mut strain: f64 = 0.0;
-            for &body in &self.bodies {
-                let body = bodies.get(body);
-                let n_across = body.faces.iter().filter(|face| face.lie(polygon) == Lie::Across).count();
-                let clearance =
-                    body.rims.iter().map(|rim| distance(centre, rim.from, rim.to)).fold(f64::INFINITY, f64::min);
-                strain = strain.max(radius / clearance + n_across as f64);
+        let (mut on_a, mut on_b) = (std::mem::take(&mut self.stands[0]), std::mem::take(&mut self.stands[1]));
+        let shadow = if front(a.vertices(), &planes[1], &mut on_a) && front(b.vertices(), &planes[0], &mut on_b) {
+            // Stand where the silhouettes change less, and further from what hides.
+            if self.strain(bodies, &on_a) <= self.strain(bodies, &on_b) {
+                let stage = Stage { bodies, candidates, floor: planes[0], target_normal: planes[1].normal };
+                self.cast(&stage, &on_a, &on_b, tolerance)
+            } else {
+                let stage = Stage { bodies, candidates, floor: planes[1], target_normal: planes[0].normal };
+                self.cast(&stage, &on_b, &on_a, tolerance)
             }
-            strain
-        };
-        let (outer, target, floor, other) = if strain(&on_a) <= strain(&on_b) {
-            (on_a, on_b, planes[0], planes[1])
         } else {
-            (on_b, on_a, planes[1], planes[0])
+            Shadow::Clear
         };
+        self.stands = [on_a, on_b];
+        shadow
+    }
+
+    /// How badly bodies look from a polygon: faces that it crosses, and its size beside its distance from them.
+    fn strain(&self, bodies: &Bodies, polygon: &[Vec3]) -> f64 {
+        let centre = polygon.iter().copied().sum::<Vec3>() / polygon.len() as f64;
+        let radius = polygon.iter().map(|v| v.distance_squared(centre)).fold(0.0, f64::max);
+        let of_body = |body: &u32| {
+            let body = bodies.get(*body);
+            // A plane beyond the ball about the polygon is not crossed.
+            let reached = |face: &&Plane| face.normal.dot(centre - face.point).powi(2) <= radius;
+            let n_across = body.faces.iter().filter(reached).filter(|face| face.lie(polygon) == Lie::Across).count();
+            let nearest =
+                body.rims.iter().map(|rim| distance_squared(centre, rim.from, rim.to)).fold(f64::INFINITY, f64::min);
+            n_across as f64 + (radius / nearest).sqrt()
+        };
+        self.bodies.iter().map(of_body).fold(0.0, f64::max)
+    }
+
+    /// The shadow on a target as seen from a convex part of a plane, both in front of each other.
+    fn cast(&mut self, stage: &Stage, outer: &[Vec3], target: &[Vec3], tolerance: f64) -> Shadow {
         self.terms.clear();
         self.targets.clear();
         self.active.clear();
@@ -140,11 +155,10 @@ impl Desk {
         self.edges.clear();
         self.fronts.clear();
         self.is_total = false;
-        self.targets.extend_from_slice(&target);
+        self.targets.extend_from_slice(target);
         self.n_target = target.len();
-        let stage = Stage { bodies, candidates, floor, target_normal: other.normal };
         let list = std::mem::take(&mut self.bodies);
-        self.look_from(&stage, &outer, &list, true);
+        self.look_from(stage, outer, &list, true);
         self.bodies = list;
         if self.is_total {
             return Shadow::Total;
@@ -155,9 +169,14 @@ impl Desk {
 
         let Self { cells, terms, targets, active, scratch, .. } = self;
         self.n_cells += cells.len();
-        let sum = cubature::integrate(cells, floor.normal, tolerance / PI, |term, x| {
-            let Term { sign, target, edges } = &terms[term];
-            sign * flux::hidden(x, floor.normal, &targets[target.clone()], &active[edges.clone()], scratch)
+        let nature = |term: usize, corners: &[Vec3; 4]| {
+            let Term { target, edges, is_cut, .. } = &terms[term];
+            nature(corners, &targets[target.clone()], &active[edges.clone()], *is_cut)
+        };
+        let normal = stage.floor.normal;
+        let sum = cubature::integrate(cells, normal, tolerance / PI, &nature, |term, x| {
+            let Term { sign, target, edges, .. } = &terms[term];
+            sign * flux::hidden(x, normal, &targets[target.clone()], &active[edges.clone()], scratch)
         });
         self.n_points += sum.n_points;
         Shadow::Partial { blocked: PI * sum.value.max(0.0), error: PI * sum.error }
@@ -217,16 +236,23 @@ impl Desk {
         }
         let sees_front = self.fronts.len() > first_front;
         let is_flat = body.faces.len() == 2;
-        let looks_in = body.opening.is_some_and(|opening| self.is_front[opening]);
-        if (!sees_front && !is_flat)
-            || (looks_in && !body.excludes(&self.targets[..self.n_target], stage.target_normal))
-        {
+        let reaches_out = || body.excludes(&self.targets[..self.n_target], stage.target_normal);
+        if !sees_front && !is_flat {
+            // From inside a closed body nothing outside is seen.
+            if body.opening.is_some() || !reaches_out() {
+                return false;
+            }
+            self.outlines.push(Outline { edges: first_edge..first_edge, fronts: first_front..first_front });
+            return true;
+        }
+        if body.opening.is_some_and(|opening| self.is_front[opening]) && !reaches_out() {
             return false;
         }
+        let owner = self.outlines.len();
         for rim in &body.rims {
             match rim.faces.map(|face| self.is_front[face as usize]) {
-                [true, false] => self.edges.push(Edge { from: rim.to, to: rim.from }),
-                [false, true] => self.edges.push(Edge { from: rim.from, to: rim.to }),
+                [true, false] => self.edges.push(Edge { from: rim.to, to: rim.from, owner }),
+                [false, true] => self.edges.push(Edge { from: rim.from, to: rim.to, owner }),
                 _ => {}
             }
         }
@@ -259,7 +285,7 @@ impl Desk {
                 self.is_total = true;
                 return;
             }
-            self.terms.push(Term { sign, target: target.clone(), edges: active.clone() });
+            self.terms.push(Term { sign, target: target.clone(), edges: active.clone(), is_cut: true });
             self.cut_into_cells(part);
             self.chain.push(k);
             self.add_union(part, target, active, -sign, k, false);
@@ -286,7 +312,7 @@ impl Desk {
             let apart = |one: Range<usize>, two: Range<usize>| {
                 let outside =
                     |edge: &Edge| self.edges[two.clone()].iter().all(|corner| edge.never_hides(part, &[corner.from]));
-                self.edges[one].iter().any(outside)
+                !two.is_empty() && self.edges[one].iter().any(outside)
             };
             if apart(outline.edges.clone(), other.clone()) || apart(other, outline.edges.clone()) {
                 return None;
@@ -312,7 +338,8 @@ impl Desk {
 
         // Keep the edges that pass through what is left.
         let corners = &self.targets[target.clone()];
-        for edge in active.map(|e| self.active[e]).chain(outline.edges.map(|e| self.edges[e])).collect::<Vec<_>>() {
+        for k in active.clone().chain(outline.edges.start + active.end..outline.edges.end + active.end) {
+            let edge = if k < active.end { self.active[k] } else { self.edges[k - active.end] };
             match edge.lie(part, corners) {
                 Lie::Below => return None,
                 Lie::Above => {}
@@ -338,31 +365,65 @@ impl Desk {
             }
             std::mem::swap(pieces, spare);
         }
-        let is_smooth = self.chain.is_empty() && lines.len() <= MOST_LINES;
+        let is_cut = lines.len() <= MOST_LINES;
+        let nature = |_: usize, corners: &[Vec3; 4]| nature(corners, target, edges, is_cut);
         for piece in pieces.iter() {
-            Cell::cover(piece, number, is_smooth, cells);
+            Cell::cover(piece, number, &nature, cells);
         }
+        terms[number].is_cut = is_cut;
     }
 }
 
 /// More lines than this are left to refinement.
 const MOST_LINES: usize = 24;
 
-/// The part of a polygon in front of a plane.
-fn front(polygon: &[Vec3], plane: &Plane) -> Option<Vec<Vec3>> {
+/// Lays out the part of a polygon in front of a plane; false if there is none.
+fn front(polygon: &[Vec3], plane: &Plane, part: &mut Vec<Vec3>) -> bool {
+    part.clear();
     match plane.lie(polygon) {
-        Lie::Below => None,
-        Lie::Above => Some(polygon.to_vec()),
+        Lie::Below => return false,
+        Lie::Above => part.extend_from_slice(polygon),
         Lie::Across => {
             let mut half = Pieces::default();
             Line { normal: plane.normal, point: plane.point }.keep(polygon, 1.0, 0.0, &mut half);
-            half.iter().next().map(<[Vec3]>::to_vec)
+            part.extend(half.iter().next().into_iter().flatten());
         }
     }
+    part.len() >= 3
 }
 
-/// Distance of a point from a segment.
-fn distance(point: Vec3, from: Vec3, to: Vec3) -> f64 {
-    let along = ((point - from).dot(to - from) / (to - from).length_squared()).clamp(0.0, 1.0);
-    point.distance(from + along * (to - from))
+/// What the integrand of a term is like on a cell with these corners.
+fn nature(corners: &[Vec3; 4], target: &[Vec3], edges: &[Edge], is_cut: bool) -> Nature {
+    let centre = corners.iter().copied().sum::<Vec3>() / corners.len() as f64;
+    if !is_cut {
+        return Nature::Kinked;
+    }
+    if edges.len() > 1 {
+        if events::is_kinked(*corners, target, edges) {
+            return Nature::Kinked;
+        }
+    }
+    let radius = corners.iter().map(|v| v.distance_squared(centre)).fold(0.0, f64::max).sqrt();
+    Nature::Smooth { reach: clearance(centre, target, edges) / radius }
+}
+
+/// Distance of a point from whatever makes F(x → target ∩ hidden sides) singular: the edges' lines and the sides of the target.
+fn clearance(x: Vec3, target: &[Vec3], edges: &[Edge]) -> f64 {
+    let mut from = target[target.len() - 1];
+    let mut nearest = f64::INFINITY;
+    for &to in target {
+        nearest = nearest.min(distance_squared(x, from, to));
+        from = to;
+    }
+    for edge in edges {
+        nearest = nearest.min(edge.plane_from(x).length_squared() / (edge.to - edge.from).length_squared());
+    }
+    nearest.sqrt()
+}
+
+/// Squared distance of a point from a segment.
+fn distance_squared(point: Vec3, from: Vec3, to: Vec3) -> f64 {
+    let (side, offset) = (to - from, point - from);
+    let along = (offset.dot(side) / side.length_squared()).clamp(0.0, 1.0);
+    (offset - along * side).length_squared()
 }
