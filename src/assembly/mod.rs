@@ -6,7 +6,9 @@ mod measurement;
 mod operators;
 mod system;
 
-pub use exchange::{Exchange, ExchangeReport, Occlusion, Repair, point_factor, point_factors};
+pub use exchange::{
+    Exchange, ExchangeReport, Ladder, Nodes, Occlusion, Repair, point_factor, point_factors, point_to_disk, unoccluded,
+};
 pub use laws::Laws;
 pub use measurement::{Gather, Measurement};
 pub use operators::{Propagation, Transport};

@@ -3,11 +3,13 @@
 //! Every pair of patches is looked at once and deposited both ways. What a patch loses to the environment and to black backs is
 //! counted by rays of its own, so that closure, Σⱼ Tᵢⱼ + sinksᵢ = μᵢ, is a check and not a definition.
 
+mod angle;
 mod apart;
 mod clip;
 mod close;
 mod closure;
 mod contour;
+mod disk;
 mod double;
 mod ladder;
 mod lambert;
@@ -22,14 +24,16 @@ mod sinks;
 mod visibility;
 
 pub use closure::Repair;
+pub use disk::point_to_disk;
+pub use ladder::{Ladder, Nodes};
 pub use point::{point_factor, point_factors};
+pub use quadrature::unoccluded;
 
 use crate::basis::{Bundles, Patch};
 use crate::geometry::{Polygon, Tracer};
 use crate::linalg::{Block, Matrix};
 use crate::sampling::mix;
 use crate::scene::Scene;
-use quadrature::{Ladder, Nodes};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use visibility::{End, Visibility};
@@ -226,7 +230,7 @@ fn upper_row(
         if occluders.coplanar(a.facet, b.facet) {
             continue;
         }
-        let pair = quadrature::unoccluded(ladder, (&a.polygon, &nodes[i]), (&b.polygon, &nodes[j]), settings.tolerance);
+        let pair = unoccluded(ladder, (&a.polygon, &nodes[i]), (&b.polygon, &nodes[j]), settings.tolerance);
         let Some((exchange, error)) = pair else { continue };
         tally.n_pairs += 1;
         tally.quadrature_error = tally.quadrature_error.max(error / exchange);
