@@ -8,8 +8,8 @@ mod orbits;
 mod system;
 
 pub use exchange::{
-    Enclosure, Exchange, ExchangeReport, Occlusion, Repair, RepairMethod, enclose, exchange_of_pair, point_factor,
-    point_factors,
+    Enclosure, Exchange, ExchangeReport, Ladder, Nodes, Occlusion, Repair, RepairMethod, enclose, exchange_of_pair,
+    point_factor, point_factors, point_to_disk, unoccluded,
 };
 pub use laws::Laws;
 pub use measurement::{Gather, Measurement};

@@ -5,7 +5,7 @@ use super::double::Double;
 use super::real::{Real, Vector};
 use pulp::Arch;
 
-/// Error of the contour's value in ulp of its terms' size: twice the largest found on 10⁵ random pairs.
+/// Error of the contour's value in ulp of its terms' size: more than twice the largest found on 3·10⁴ random pairs.
 const ROUNDING: f64 = 2.0;
 
 /// Shares of the tolerance that the contour's truncation may take, tried in turn.
@@ -29,7 +29,7 @@ impl Close {
         let [a, b] = corners;
         let corners = if reach(&b) < reach(&a) { [b, a] } else { [a, b] };
         let size = corners.iter().flatten().map(|v| v.rounded().length()).fold(0.0, f64::max);
-        let unit = size.log2().round().exp2();
+        let unit = power_of_two(size);
         let scale = Double::from(1.0 / unit);
         Self { arch, corners: corners.map(|p| p.into_iter().map(|v| v.scaled(scale)).collect()), unit }
     }
@@ -76,6 +76,11 @@ impl Close {
         let square = self.unit * self.unit;
         (value * square, error * square)
     }
+}
+
+/// The largest power of two that is no larger: the number without its fraction.
+fn power_of_two(size: f64) -> f64 {
+    f64::from_bits(size.to_bits() & f64::INFINITY.to_bits())
 }
 
 /// The value and its error estimate.

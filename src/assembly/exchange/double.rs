@@ -4,6 +4,8 @@
 //! their error bounds are those of Joldes, Muller and Popescu (2017). Cost: 10 to 30 flops a product or a sum, a microsecond a
 //! logarithm or an angle. What it does not do: infinities, and numbers beyond 1e±140, whose products leave the range of the low part.
 
+use super::angle;
+use super::contour::ABREAST;
 use super::real::Real;
 use super::rules::gauss_nodes;
 use std::f64::consts::{LN_2, PI};
@@ -71,16 +73,16 @@ static EXPONENTIAL: LazyLock<[Double; 25]> = LazyLock::new(|| {
 const PI_DOUBLE: Double = Double::new(PI, 1.224_646_799_147_353_2e-16);
 const LN_2_DOUBLE: Double = Double::new(LN_2, 2.319_046_813_846_299_6e-17);
 
-/// Angles of the table that arguments are turned by: k/128 of a turn's half.
-const N_TURNS: usize = 64;
+/// Angles of the table that directions are turned by, in a right angle.
+const N_TURNS: usize = 256;
 
-/// Cosine and sine of k π / (2 N_TURNS).
-static TURNS: LazyLock<Vec<(Double, Double)>> = LazyLock::new(|| {
-    // cos t + i sin t of the first by its series, the others by turning on; the errors add up to some N_TURNS ulp of 1e-32.
-    let t = PI_DOUBLE * Double::from(0.5 / N_TURNS as f64);
+/// k π / (2 N_TURNS) with its cosine and sine.
+static TURNS: LazyLock<Vec<[Double; 3]>> = LazyLock::new(|| {
+    // The first by its series, the others by turning on; the errors add up to some N_TURNS ulp of 1e-32, most of which cancel.
+    let step = PI_DOUBLE * Double::from(0.5 / N_TURNS as f64);
     let (mut cosine, mut sine, mut term) = (Double::from(1.0), Double::default(), Double::from(1.0));
-    for k in 1..20 {
-        term = term * t / Double::from(f64::from(k));
+    for k in 1..14 {
+        term = term * step / Double::from(f64::from(k));
         match k % 4 {
             1 => sine = sine + term,
             2 => cosine = cosine - term,
@@ -88,18 +90,16 @@ static TURNS: LazyLock<Vec<(Double, Double)>> = LazyLock::new(|| {
             _ => cosine = cosine + term,
         }
     }
-    let mut turns = vec![(Double::from(1.0), Double::default())];
+    let mut turns = vec![[Double::default(), Double::from(1.0), Double::default()]];
     for k in 0..N_TURNS {
-        let (c, s) = turns[k];
-        turns.push((c * cosine - s * sine, s * cosine + c * sine));
+        let [_, c, s] = turns[k];
+        turns.push([step * Double::from((k + 1) as f64), c * cosine - s * sine, s * cosine + c * sine]);
     }
     turns
 });
 
-/// 1/(2k + 1) with alternating sign, the coefficients of the arc tangent's series.
-static ARC_SERIES: LazyLock<[Double; 12]> = LazyLock::new(|| {
-    std::array::from_fn(|k| Double::from(if k % 2 == 0 { 1.0 } else { -1.0 }) / Double::from((2 * k + 1) as f64))
-});
+const FIFTH: Double = Double::new(0.2, -1.110_223_024_625_156_6e-17);
+const THIRD: Double = Double::new(0.333_333_333_333_333_3, 1.850_371_707_708_594_3e-17);
 
 impl From<f64> for Double {
     #[inline(always)]
@@ -163,7 +163,7 @@ impl Real for Double {
 
     fn gauss(n: usize) -> &'static [(Self, Self)] {
         static RULES: LazyLock<Vec<Vec<(Double, Double)>>> =
-            LazyLock::new(|| (0..=Double::MOST_NODES).map(gauss_nodes).collect());
+            LazyLock::new(|| (0..=Double::MOST_NODES).map(|n| gauss_nodes(n, ABREAST)).collect());
         &RULES[n]
     }
 
@@ -202,20 +202,21 @@ impl Real for Double {
     }
 
     #[inline(always)]
-    fn atan2(self, x: Self) -> Self {
-        let y = self;
-        // Reflect into the first octants, turn by the nearest angle of the table, and sum the series of what is left.
-        let (ax, ay) = (if x.high < 0.0 { -x } else { x }, if y.high < 0.0 { -y } else { y });
-        if ax.high == 0.0 && ay.high == 0.0 {
+    fn angle(self, x: Self) -> Self {
+        // Fold at the y axis, turn by the nearest angle of the table, and sum the series of what is left.
+        let (y, across) = (self, if x.high < 0.0 { -x } else { x });
+        if across.high == 0.0 && y.high <= 0.0 {
             return Self::default();
         }
-        let nearest = (ay.high.atan2(ax.high) * (2 * N_TURNS) as f64 / PI).round();
-        let (cosine, sine) = TURNS[nearest as usize];
-        let t = (ay * cosine - ax * sine) / (ax * cosine + ay * sine);
-        let t_squared = t * t;
-        let series = ARC_SERIES.iter().rev().fold(Self::default(), |sum, c| sum * t_squared + *c);
-        let angle = PI_DOUBLE * Double::from(0.5 * nearest / N_TURNS as f64) + t * series;
-        let angle = if x.high < 0.0 { PI_DOUBLE - angle } else { angle };
-        if y.high < 0.0 { -angle } else { angle }
+        let nearest = (angle::angle(y.high, across.high) * (2 * N_TURNS) as f64 / PI).round().max(0.0);
+        let [turn, cosine, sine] = TURNS[nearest as usize];
+        let t = (y * cosine - across * sine) / (across * cosine + y * sine);
+        // t² < 1e-5: from the third term on, f64 has the digits that are left.
+        let square = t * t;
+        let z = square.high;
+        let tail = z * (z * (1.0 / 9.0 + z * (z / 13.0 - 1.0 / 11.0)) - 1.0 / 7.0);
+        let series = square * (square * (FIFTH + Double::from(tail)) - THIRD);
+        let angle = turn + (t + t * series);
+        if x.high < 0.0 { PI_DOUBLE - angle } else { angle }
     }
 }

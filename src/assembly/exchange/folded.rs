@@ -1,6 +1,7 @@
 //! Exchange between orbits of bundles, only between those that are asked for.
 
-use super::quadrature::{self, Ladder, Nodes};
+use super::ladder::{Ladder, Nodes};
+use super::quadrature;
 use super::shadow::Desk;
 use super::visibility::{self, End, Obstacles, Visibility};
 use super::{Assembled, Exchange, ExchangeReport, Occlusion};

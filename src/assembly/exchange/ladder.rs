@@ -15,20 +15,27 @@ pub const LADDER: [usize; 11] = [2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16];
 /// Rungs whose points are kept with every patch; the others are laid anew for every pair.
 const N_KEPT: usize = 7;
 
-/// The Gauss rules of the ladder.
+/// The Gauss rules that [`unoccluded`](super::unoccluded) chooses from, and the vector instructions that this machine has for them.
 pub struct Ladder {
     /// Each rung's, and the one longer by a point.
     rules: [[Rule; 2]; LADDER.len()],
-    pub arch: Arch,
+    pub(super) arch: Arch,
 }
 
-/// A patch, and its points for the lower rungs. 6 kB a quadrilateral.
+/// A polygon made ready for [`unoccluded`](super::unoccluded): its points for the lower rungs. 7 kB a quadrilateral.
 pub struct Nodes {
-    pub shape: Shape,
+    pub(super) shape: Shape,
     rungs: Vec<Points>,
 }
 
+impl Default for Ladder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Ladder {
+    /// Computes the rules.
     pub fn new() -> Self {
         Self { rules: LADDER.map(|n| [n, n + 1].map(gauss_legendre)), arch: Arch::new() }
     }
@@ -42,13 +49,13 @@ impl Ladder {
     }
 
     /// A polygon given by its corners, with no points kept.
-    pub fn bare(&self, corners: &[Vector<Double>]) -> Nodes {
+    pub(super) fn bare(&self, corners: &[Vector<Double>]) -> Nodes {
         let own: Vec<_> = corners.iter().map(|v| *v - corners[0]).collect();
         Nodes { shape: Shape::new(&own), rungs: Vec::new() }
     }
 
     /// The points of a rung.
-    pub fn rung<'a>(&self, nodes: &'a Nodes, rung: usize) -> Cow<'a, Points> {
+    pub(super) fn rung<'a>(&self, nodes: &'a Nodes, rung: usize) -> Cow<'a, Points> {
         nodes.rungs.get(rung).map_or_else(|| Cow::Owned(self.points(&nodes.shape, rung)), Cow::Borrowed)
     }
 

@@ -3,12 +3,14 @@
 //! Every pair of patches is looked at once and deposited both ways. What a patch loses to the environment and to black backs is
 //! counted by rays of its own, so that closure, Σⱼ Tᵢⱼ + sinksᵢ = μᵢ, is a check and not a definition.
 
+mod angle;
 mod apart;
 mod clip;
 mod close;
 mod closure;
 mod cluster;
 mod contour;
+mod disk;
 mod double;
 mod enclosure;
 mod folded;
@@ -27,9 +29,12 @@ mod sinks;
 mod unoccluded;
 mod visibility;
 
+pub use disk::point_to_disk;
 pub use enclosure::{Enclosure, enclose};
 pub(super) use folded::compute as folded;
+pub use ladder::{Ladder, Nodes};
 pub use point::{point_factor, point_factors};
+pub use quadrature::unoccluded;
 pub(super) use repair::repair_by;
 pub use repair::{Repair, RepairMethod};
 pub use unoccluded::exchange_of_pair;
@@ -40,7 +45,6 @@ use crate::linalg::{Block, Matrix};
 use crate::sampling::mix;
 use crate::scene::Scene;
 use cluster::{Clusters, View};
-use quadrature::{Ladder, Nodes};
 use rayon::prelude::*;
 use shadow::Desk;
 use sinks::{Lost, Sink};
@@ -277,7 +281,7 @@ impl Parts<'_> {
         let mut row = Row { entries: Vec::new(), lost: Vec::new(), tally: Tally::default() };
         self.clusters.for_each_partner(i, |j, view| {
             let [a, b] = [i, j].map(|k| (self.ends[k].polygon, &self.nodes[k]));
-            let Some((exchange, error)) = quadrature::unoccluded(self.ladder, a, b, settings.tolerance) else { return };
+            let Some((exchange, error)) = unoccluded(self.ladder, a, b, settings.tolerance) else { return };
             let n_open = usize::from(matches!(view, View::Open(_)));
             let mut tally = Tally { n_pairs: 1, n_open, quadrature_error: error / exchange, ..Tally::default() };
             let (value, variance) = match self.visible(desk, [i, j], view, settings) {

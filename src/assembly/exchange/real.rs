@@ -1,5 +1,7 @@
 //! The numbers that the contour integral is computed in: f64, and double-double where f64 has no digits left.
 
+use super::angle::angle;
+use super::contour::ABREAST;
 use super::double::Double;
 use super::rules::gauss_nodes;
 use crate::geometry::Vec3;
@@ -35,8 +37,8 @@ pub trait Real:
     fn ln(self) -> Self;
     /// ln(1 + self).
     fn ln_1p(self) -> Self;
-    /// Angle of (x, self) in [−π, π], zero at the origin.
-    fn atan2(self, x: Self) -> Self;
+    /// Angle in [0, π] of (x, self), self ≥ 0, from the x axis; zero at the origin.
+    fn angle(self, x: Self) -> Self;
 }
 
 impl Real for f64 {
@@ -45,7 +47,7 @@ impl Real for f64 {
 
     fn gauss(n: usize) -> &'static [(f64, f64)] {
         static RULES: LazyLock<Vec<Vec<(f64, f64)>>> =
-            LazyLock::new(|| (0..=f64::MOST_NODES).map(gauss_nodes).collect());
+            LazyLock::new(|| (0..=f64::MOST_NODES).map(|n| gauss_nodes(n, ABREAST)).collect());
         &RULES[n]
     }
 
@@ -68,8 +70,8 @@ impl Real for f64 {
     }
 
     #[inline(always)]
-    fn atan2(self, x: f64) -> f64 {
-        f64::atan2(self, x)
+    fn angle(self, x: f64) -> f64 {
+        angle(self, x)
     }
 }
 

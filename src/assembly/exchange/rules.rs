@@ -12,12 +12,13 @@ pub struct Rule {
 
 /// Gauss–Legendre with n nodes, exact for polynomials of degree 2n − 1.
 pub fn gauss_legendre(n: usize) -> Rule {
-    let (nodes, weights) = gauss_nodes::<f64>(n).into_iter().unzip();
+    let (nodes, weights) = gauss_nodes::<f64>(n, 1).into_iter().unzip();
     Rule { nodes, weights }
 }
 
 /// The same as pairs of node and weight, to the precision of the numbers: roots of Pₙ by Newton's method from Tricomi's estimate.
-pub fn gauss_nodes<R: Real>(n: usize) -> Vec<(R, R)> {
+/// `multiple` makes their number one of its multiples, by nodes of weight zero.
+pub fn gauss_nodes<R: Real>(n: usize, multiple: usize) -> Vec<(R, R)> {
     let (one, half, degree) = (R::from(1.0), R::from(0.5), R::from(n as f64));
     let node = |k: usize| {
         let mut x = R::from((PI * (k as f64 + 0.75) / (n as f64 + 0.5)).cos());
@@ -34,7 +35,8 @@ pub fn gauss_nodes<R: Real>(n: usize) -> Vec<(R, R)> {
         }
         (half * (one - x), one / ((one - x * x) * slope * slope))
     };
-    (0..n).map(node).collect()
+    let filling = std::iter::repeat_n((half, R::from(0.0)), n.next_multiple_of(multiple) - n);
+    (0..n).map(node).chain(filling).collect()
 }
 
 #[cfg(test)]
