@@ -37,7 +37,7 @@ fn bumpy_sphere() -> Vec<Polygon> {
     const N: usize = 24;
     let point = |i: usize, j: usize| {
         let (polar, around) = (i as f64 / N as f64 * PI, (j % N) as f64 / N as f64 * TAU);
-        let ring = if i % N == 0 { 0.0 } else { polar.sin() };
+        let ring = if i.is_multiple_of(N) { 0.0 } else { polar.sin() };
         let radius = 1.0 + 0.1 * ring * (9.0 * polar).sin() * (7.0 * around).cos();
         radius * Vec3::new(ring * around.cos(), ring * around.sin(), polar.cos())
     };
@@ -56,7 +56,8 @@ fn no_ray_escapes_through_an_edge_of_a_closed_mesh() {
     let n_rays = if std::env::var_os("ETENDUE_LARGE").is_some() { 500_000 } else { 10_000 };
     let turn = Mat3::from_axis_angle(Vec3::new(0.36, 0.48, 0.8), 0.7);
     let far = Vec3::new(1e5, -1e5, 0.7e5);
-    let maps: [(&str, f64, &(dyn Fn(Vec3) -> Vec3 + Sync)); 7] = [
+    type Map<'a> = &'a (dyn Fn(Vec3) -> Vec3 + Sync);
+    let maps: [(&str, f64, Map); 7] = [
         ("as it is", 1.0, &|v| v),
         ("tiny", 1e-6, &|v| turn * v * 1e-6),
         ("huge", 1e6, &|v| turn * v * 1e6),

@@ -26,7 +26,7 @@ pub(super) struct LocalRay {
     pub origin: [f32; 3],
     pub direction: [f32; 3],
     pub t_max: f32,
-    /// R |d| (see [`super::block`]), and what f64 rounds off before.
+    /// At least R |d| (see [`super::block`]), and what f64 rounds off before.
     pub doubt: f32,
     entry: f64,
     speed: f64,
@@ -57,7 +57,7 @@ impl Local {
     }
 
     /// The ray, 0 < t ≤ t_max, moved up to the scene where it starts far outside.
-    #[inline]
+    #[inline(always)]
     pub fn ray(&self, ray: &Ray, t_max: f64) -> Reach {
         let largest = ray.direction.abs().max_element();
         if !ray.direction.is_finite() || largest == 0.0 {
@@ -82,8 +82,9 @@ impl Local {
                 return Reach::Nothing;
             }
         }
-        let reach = start.as_vec3().length() + 1.0;
-        let length = (length_squared as f32).sqrt();
+        // Bound R and |d| without roots, by √x ≤ (x/c + c)/2: |d| is between 1 and √12.
+        let reach = (0.5 * start.length_squared() + 1.5) as f32;
+        let length = (0.25 * length_squared + 1.0) as f32;
         let mut t_max = (t_max * speed - entry) as f32;
         if t_max <= 0.0 {
             return Reach::Nothing;

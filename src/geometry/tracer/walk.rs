@@ -24,7 +24,9 @@ impl Kernel for Closest<'_> {
     #[inline(always)]
     fn run(self, simd: impl Eight) -> Option<Hit> {
         let tree = &self.tracer.tree;
-        if tree.n_waiting <= WAITING {
+        if tree.nodes.is_empty() {
+            self.test_all(simd, tree)
+        } else if tree.n_waiting <= WAITING {
             self.walk(simd, tree, &mut [0; WAITING])
         } else {
             self.walk(simd, tree, &mut vec![0; tree.n_waiting])
@@ -33,6 +35,15 @@ impl Kernel for Closest<'_> {
 }
 
 impl Closest<'_> {
+    #[inline(always)]
+    fn test_all(&self, simd: impl Eight, tree: &Tree) -> Option<Hit> {
+        let mut so_far = SoFar { lanes: LaneRay::new(simd, &self.local), t_max: 0.0, best: None };
+        for block in &tree.blocks {
+            self.visit(simd, block, &mut so_far);
+        }
+        so_far.best
+    }
+
     /// Waiting children are numbers that sort by where the ray enters them: bits of t, then the child.
     #[inline(always)]
     fn walk(&self, simd: impl Eight, tree: &Tree, waiting: &mut [u64]) -> Option<Hit> {
@@ -127,7 +138,9 @@ impl Kernel for Any<'_> {
     #[inline(always)]
     fn run(self, simd: impl Eight) -> bool {
         let tree = &self.tracer.tree;
-        if tree.n_waiting <= WAITING {
+        if tree.nodes.is_empty() {
+            self.test_all(simd, tree)
+        } else if tree.n_waiting <= WAITING {
             self.walk(simd, tree, &mut [0; WAITING])
         } else {
             self.walk(simd, tree, &mut vec![0; tree.n_waiting])
@@ -137,16 +150,19 @@ impl Kernel for Any<'_> {
 
 impl Any<'_> {
     #[inline(always)]
+    fn test_all(&self, simd: impl Eight, tree: &Tree) -> bool {
+        let lanes = LaneRay::new(simd, &self.local);
+        for block in &tree.blocks {
+            if self.is_blocked_in(simd, block, &lanes) {
+                return true;
+            }
+        }
+        false
+    }
+
+    #[inline(always)]
     fn walk(&self, simd: impl Eight, tree: &Tree, waiting: &mut [u32]) -> bool {
         let lanes = LaneRay::new(simd, &self.local);
-        if tree.nodes.is_empty() {
-            for block in &tree.blocks {
-                if self.is_blocked_in(simd, block, &lanes) {
-                    return true;
-                }
-            }
-            return false;
-        }
         let boxes = BoxRay::new(simd, self.local.origin, self.local.direction);
         let t_max = round_up(self.local.t_max);
         let mut n_waiting = 1;
