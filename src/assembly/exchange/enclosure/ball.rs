@@ -1,9 +1,9 @@
 //! Balls on the real line: a double-double midpoint (some 32 digits) and a radius rounded outward.
 //!
 //! Every operation returns a ball that holds the exact result for all numbers in its operands. With u = 2⁻⁵³, the sum and the product
-//! of two double-doubles are off by at most 3u² + 13u³ and 5u² (Joldes, Muller and Popescu 2017, "Tight and rigorous error bounds for
-//! basic building blocks of double-word arithmetic", algorithms 6 and 10; Muller and Rideau 2022 prove both formally);
-//! 8u² is charged for either. Quotients and square roots are guessed and then bounded by what multiplying back leaves, so that no
+//! of two double-doubles are off by at most 3u² + 13u³ and less than 6u² (Joldes, Muller and Popescu 2017, "Tight and rigorous error
+//! bounds for basic building blocks of double-word arithmetic", algorithms 6 and 10; Muller and Rideau 2022 prove both formally); 8u²
+//! is charged for either. Quotients and square roots are guessed and then bounded by what multiplying back leaves, so that no
 //! further theorem is needed. Products are split by Dekker's method and need no fused instruction.
 //!
 //! Operands that are plain f64 and give a plain f64 stay exact: radius 0.

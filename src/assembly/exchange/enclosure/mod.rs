@@ -63,9 +63,9 @@ impl Enclosure {
 /// spans its contour, the fan of triangles from any vertex for one. Whoever uses the unit normal and the vertices as if they were planar
 /// differs by the planarity defect over the polygon's size, relative (some 1e-16 if it was only rotated).
 ///
-/// The relative width is below 1e-15, for pairs far, near, touching, slivers alike, unless the exchange is so small that the balls' digits
-/// (1e-29 of the pair's extent squared) show. Polygons in one plane give exactly 0 where that can be told from the vertices (equal coordinates), else
-/// bounds that hold 0.
+/// The relative width is below 1e-15, for pairs far, near, touching, slivers alike, unless the exchange is so small that the balls'
+/// digits (1e-29 of the pair's extent squared) show. Polygons in one plane give exactly 0 where that can be told from the vertices
+/// (equal coordinates), else bounds that hold 0.
 ///
 /// Lengths from 1e-150 to 1e150. Cost: 0.1 ms for most pairs, whether apart or with a common edge or corner, and up to some ms where an
 /// edge touches another in between.

@@ -81,6 +81,8 @@ mod tests {
         for rule in RULES.iter() {
             let n = rule.size();
             assert!(rule.moment_error < 1e-28, "{n}: {:e}", rule.moment_error);
+            // What the bound of the tail takes for granted.
+            assert!(rule.nodes.iter().all(|(x, w)| x.lower() > 0.0 && x.upper() < 1.0 && w.lower() > 0.0), "{n}");
             // Powers are sums of Chebyshev polynomials whose coefficients sum to 1.
             for power in (0..2 * n as i32).step_by(2) {
                 let value = |x: Ball| (0..power).fold(Ball::ONE, |product, _| product * x);
