@@ -12,14 +12,14 @@ mod point;
 mod quadrature;
 mod rules;
 mod shadow;
+mod single;
 mod sinks;
-mod unoccluded;
 mod visibility;
 
 pub use closure::Repair;
 pub use enclosure::{Enclosure, enclose};
 pub use point::{point_factor, point_factors};
-pub use unoccluded::exchange_of_pair;
+pub use single::exchange_of_pair;
 
 use crate::basis::{Bundles, Patch};
 use crate::geometry::{Polygon, Tracer};
