@@ -25,8 +25,8 @@ mod repair;
 mod rules;
 mod shadow;
 mod shape;
+mod single;
 mod sinks;
-mod unoccluded;
 mod visibility;
 
 pub use disk::point_to_disk;
@@ -37,7 +37,7 @@ pub use point::{point_factor, point_factors};
 pub use quadrature::unoccluded;
 pub(super) use repair::repair_by;
 pub use repair::{Repair, RepairMethod};
-pub use unoccluded::exchange_of_pair;
+pub use single::exchange_of_pair;
 
 use crate::basis::Bundles;
 use crate::geometry::{Polygon, Tracer};

@@ -1,6 +1,6 @@
 //! The exchange of one pair of polygons with nothing between them, outside any scene.
 
-use super::ladder::Ladder;
+use super::Ladder;
 use super::quadrature::unoccluded;
 use crate::geometry::Polygon;
 use std::sync::LazyLock;
