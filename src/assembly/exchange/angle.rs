@@ -1,7 +1,8 @@
 //! The angle of a point in the upper half plane, without branches, so that several are computed side by side.
 //!
-//! The arc tangent of |t| ≤ tan(π/8) is t times a polynomial in t² that interpolates arctan(t)/t at twelve Chebyshev points, within
-//! 1.3e-18; larger ones are turned there by π/4 or π/2 first. Error: 2 ulp, seen and tested; the library's `atan2` is within 1.
+//! The arc tangent of |t| ≤ tan(π/8) is t times a polynomial in t² that interpolates arctan(t)/t at twelve Chebyshev points,
+//! within 1.3e-18; larger ones are turned there by π/4 or π/2 first. Error: 2 ulp, seen and tested; the library's `atan2` is
+//! within 1.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 

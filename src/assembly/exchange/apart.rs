@@ -8,10 +8,10 @@ use super::shape::{Shape, point};
 use crate::geometry::Vec3;
 use pulp::Arch;
 
-/// The relative error of n points an axis on a patch with the circumradius r, the other one at the distance q r from its centre or
-/// further, is at most CONSTANTS (2q)¹⁻²ⁿ: the ellipse through a pole at q r has half axes that add to 2q, nearly, and heights take one
-/// of the 2n degrees. Measured on 2·10⁵ pairs of triangles, parallelograms and other quadrilaterals, slivers and grazing pairs among
-/// them: 5, 7, 8, 10, 12, 14, 16, 17, 17 for up to twelve points; at least doubled here.
+/// The relative error of n points an axis on a patch with the circumradius r, the other one at the distance q r from its centre
+/// or further, is at most CONSTANTS (2q)¹⁻²ⁿ: the ellipse through a pole at q r has half axes that add to 2q, nearly, and
+/// heights take one of the 2n degrees. Measured on 2·10⁵ pairs of triangles, parallelograms and other quadrilaterals, slivers
+/// and grazing pairs among them: 5, 7, 8, 10, 12, 14, 16, 17, 17 for up to twelve points; at least doubled here.
 const CONSTANTS: [f64; LADDER.len()] = [12.0, 16.0, 20.0, 25.0, 30.0, 35.0, 40.0, 40.0, 40.0, 40.0, 40.0];
 
 /// Relative rounding of a sum of positive products, and of a height for each unit of distance over it.
@@ -35,8 +35,8 @@ pub struct Apart<'a> {
 }
 
 impl<'a> Apart<'a> {
-    /// `highest` are the heights of each one's highest corner above the other's plane, `shift` leads from the first's first corner to the
-    /// second's.
+    /// `highest` are the heights of each one's highest corner above the other's plane, `shift` leads from the first's first
+    /// corner to the second's.
     pub fn new(ladder: &'a Ladder, nodes: [&'a Nodes; 2], highest: [f64; 2], shift: Vector<Double>) -> Self {
         let [a, b] = nodes.map(|nodes| &nodes.shape);
         let exact_shift = shift;
@@ -69,7 +69,8 @@ impl<'a> Apart<'a> {
         self.ladder.arch
     }
 
-    /// The shortest rules that leave less than the tolerance, relative to T, if there are any among those up to `most` points an axis.
+    /// The shortest rules that leave less than the tolerance, relative to T, if there are any among those up to `most` points
+    /// an axis.
     pub fn rungs(&self, tolerance: f64, most: usize) -> Option<[usize; 2]> {
         let allowed = 0.5 * (tolerance - self.rounding);
         let mut shortest = [0; 2];

@@ -15,8 +15,8 @@ pub enum Half {
     Part(Vec<Vec3>),
 }
 
-/// Cuts `polygon` by the plane of `plane` (Sutherland and Hodgman 1974). Corners within the rounding of their coordinates lie on
-/// the plane.
+/// Cuts `polygon` by the plane of `plane` (Sutherland and Hodgman 1974). Corners within the rounding of their coordinates lie
+/// on the plane.
 pub fn in_front_of(polygon: &[Vec3], plane: &Polygon) -> Half {
     above(polygon, plane.vertices()[0], plane.normal())
 }
@@ -44,8 +44,8 @@ pub fn above(polygon: &[Vec3], origin: Vec3, normal: Vec3) -> Half {
     Half::Part(part)
 }
 
-/// The part of a polygon above a plane, in double-double: its corners and their heights, zero where they lie on the plane. What is cut
-/// off is cut off to thirty digits, so that little left over is right to as many as the polygon.
+/// The part of a polygon above a plane, in double-double: its corners and their heights, zero where they lie on the plane. What
+/// is cut off is cut off to thirty digits, so that little left over is right to as many as the polygon.
 pub fn cut(corners: &[Vector<Double>], heights: &[Double]) -> Vec<Vector<Double>> {
     let mut part = Vec::with_capacity(corners.len() + 1);
     for k in 0..corners.len() {

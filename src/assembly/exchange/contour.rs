@@ -10,14 +10,14 @@
 //! ∫ ln r = s₁ ln r₁ − s₀ ln r₀ − m + h φ,   s₀ = (q − x)·u,   s₁ = s₀ + m,   h the distance of x from the line, φ the angle seen,
 //! ```
 //!
-//! both logarithms are integrated along the outer edge in closed form, for s₀ is linear in s and r₀² quadratic; −m adds up to nothing
-//! around the contour. What is left, h φ, is analytic but where the lines or their ends come near each other in the complex plane, and
-//! analytic *up to* an end at which the edges touch. Gauss' rule takes it, with as many nodes as the Bernstein ellipse through the
-//! nearest of those points asks for, on panels graded towards it. Nothing is shifted apart.
+//! both logarithms are integrated along the outer edge in closed form, for s₀ is linear in s and r₀² quadratic; −m adds up to
+//! nothing around the contour. What is left, h φ, is analytic but where the lines or their ends come near each other in the
+//! complex plane, and analytic *up to* an end at which the edges touch. Gauss' rule takes it, with as many nodes as the
+//! Bernstein ellipse through the nearest of those points asks for, on panels graded towards it. Nothing is shifted apart.
 //!
-//! Source: Sparrow (1963), "A new and simpler formulation for radiative angle factors", eq. 9; the error of Gauss' rule: Trefethen,
-//! "Approximation Theory and Approximation Practice", theorem 19.3. Cost: 5 to 100 µs in f64, some hundred times that in double-double.
-//! What it does not do: the sum cancels, so that only an absolute accuracy is its own; its `size` tells.
+//! Source: Sparrow (1963), "A new and simpler formulation for radiative angle factors", eq. 9; the error of Gauss' rule:
+//! Trefethen, "Approximation Theory and Approximation Practice", theorem 19.3. Cost: 2 to 20 µs in f64, ten times that in
+//! double-double. What it does not do: the sum cancels, so that only an absolute accuracy is its own; its `size` tells.
 
 use super::real::{Real, Vector};
 use pulp::{Arch, Simd, WithSimd};
@@ -32,8 +32,8 @@ pub struct Integral<R> {
     pub size: f64,
 }
 
-/// T of two convex polygons, each wholly in front of the other's plane, in units of their coordinates squared; these should be of
-/// order one. The truncation is kept below some `tolerance`, absolute.
+/// T of two convex polygons, each wholly in front of the other's plane, in units of their coordinates squared; these should be
+/// of order one. The truncation is kept below some `tolerance`, absolute.
 pub fn exchange<R: Real>(arch: Arch, a: &[Vector<R>], b: &[Vector<R>], tolerance: f64) -> Integral<R> {
     let (outer, inner) = (edges_of(a), edges_of(b));
     let share = tolerance / (outer.len() * inner.len()) as f64;
@@ -295,13 +295,14 @@ impl<R: Real> Swept<R> {
         total.truncation += bound * rho.max(1.0).powi(-2 * n as i32);
     }
 
-    /// The sum of the half axes of the largest Bernstein ellipse about a panel that no singularity is in, less a margin, and the foot
-    /// of the nearest singularity.
+    /// The sum of the half axes of the largest Bernstein ellipse about a panel that no singularity is in, less a margin, and
+    /// the foot of the nearest singularity.
     fn nearest_ellipse(&self, from: f64, to: f64) -> (f64, f64) {
         let half = 0.5 * (to - from);
         let (mut rho, mut nearest) = (f64::INFINITY, 0.5 * (from + to));
         for (s, beside) in self.singularities.iter().flatten() {
-            // The ellipse through z has half axes that add to the one root, larger than 1, of this sum of distances to the foci.
+            // The ellipse through z has half axes that add to the one root, larger than 1, of this sum of distances to the
+            // foci.
             let [x, y] = [(s - 0.5 * (from + to)) / half, beside / half];
             let sum = 0.5 * (((x + 1.0).powi(2) + y * y).sqrt() + ((x - 1.0).powi(2) + y * y).sqrt());
             let through = sum + (sum * sum - 1.0).max(0.0).sqrt();

@@ -1,8 +1,9 @@
 //! Double-double arithmetic: a number as the unevaluated sum of two f64, some 31 decimal digits.
 //!
-//! Source: Dekker (1971), "A floating-point technique for extending the available precision"; the sloppy and accurate variants and
-//! their error bounds are those of Joldes, Muller and Popescu (2017). Cost: 10 to 30 flops a product or a sum, a microsecond a
-//! logarithm or an angle. What it does not do: infinities, and numbers beyond 1e±140, whose products leave the range of the low part.
+//! Source: Dekker (1971), "A floating-point technique for extending the available precision"; error bounds: Joldes, Muller and
+//! Popescu (2017), "Tight and rigorous error bounds for basic building blocks of double-word arithmetic". Cost: 10 to 30 flops
+//! a product or a sum, some 100 ns an angle, twice that a logarithm. What it does not do: infinities, and numbers beyond
+//! 1e±140, whose products leave the range of the low part.
 
 use super::angle;
 use super::contour::ABREAST;
@@ -218,5 +219,49 @@ impl Real for Double {
         let series = square * (square * (FIFTH + Double::from(tail)) - THIRD);
         let angle = turn + (t + t * series);
         if x.high < 0.0 { PI_DOUBLE - angle } else { angle }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::Stream;
+
+    /// Some ulp of 2⁻¹⁰⁴ for a dozen operations.
+    const ROUNDING: f64 = 16.0 * Double::EPSILON;
+
+    fn assert_equal(found: Double, expected: Double, scale: f64) {
+        let error = (found - expected).value().abs();
+        assert!(error <= ROUNDING * scale, "{found:?} for {expected:?}: {error:e}");
+    }
+
+    #[test]
+    fn arithmetic_undoes_itself() {
+        let mut stream = Stream::new(0x646f_7562, 0, 0);
+        let mut number = || Double::from(stream.uniform() + 0.1) / Double::from(stream.uniform() + 0.1);
+        for _ in 0..10_000 {
+            let (x, y) = (number(), number());
+            assert_equal(x / y * y, x, x.value());
+            assert_equal(x + y - y, x, x.value() + y.value());
+            assert_equal(x.sqrt() * x.sqrt(), x, x.value());
+            assert_equal((x * y).ln(), x.ln() + y.ln(), 1.0 + x.ln().value().abs() + y.ln().value().abs());
+            assert_equal(x.ln_1p(), (Double::from(1.0) + x).ln(), 1.0);
+            // Angles add where complex numbers multiply.
+            let (u, v) = (y.angle(x), x.angle(y));
+            assert_equal(u + v, PI_DOUBLE * Double::from(0.5), 1.0);
+            assert_equal((x * y + y * x).angle(x * x - y * y), u + u, 1.0);
+        }
+    }
+
+    #[test]
+    fn constants_come_out() {
+        // Machin: π/4 = 4 arctan 1/5 − arctan 1/239.
+        let arc = |n: f64| Double::from(1.0).angle(Double::from(n));
+        let quarter = Double::from(4.0) * arc(5.0) - arc(239.0);
+        assert_equal(quarter * Double::from(4.0), PI_DOUBLE, 4.0);
+        // ln 2 = 18 artanh 1/26 − 2 artanh 1/4801 + 8 artanh 1/8749.
+        let area = |n: f64| Double::from(0.5) * (Double::from(n + 1.0) / Double::from(n - 1.0)).ln();
+        let two = Double::from(18.0) * area(26.0) - Double::from(2.0) * area(4801.0) + Double::from(8.0) * area(8749.0);
+        assert_equal(two, LN_2_DOUBLE, 1.0);
     }
 }

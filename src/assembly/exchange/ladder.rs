@@ -15,7 +15,8 @@ pub const LADDER: [usize; 11] = [2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16];
 /// Rungs whose points are kept with every patch; the others are laid anew for every pair.
 const N_KEPT: usize = 7;
 
-/// The Gauss rules that [`unoccluded`](super::unoccluded) chooses from, and the vector instructions that this machine has for them.
+/// The Gauss rules that [`unoccluded`](super::unoccluded) chooses from, and the vector instructions that this machine has for
+/// them.
 pub struct Ladder {
     /// Each rung's, and the one longer by a point.
     rules: [[Rule; 2]; LADDER.len()],

@@ -4,9 +4,9 @@
 //! T = ∫∫ cosθ cosθ' / r² dA dA' = Σᵢ Σⱼ (wᵢ hᵢ) (wⱼ hⱼ) / r⁴ᵢⱼ,   h the height above the other's plane
 //! ```
 //!
-//! for r cosθ is the height of the *other* point above the plane. Every term is positive: nothing cancels. Cost: one division for four
-//! terms, as many lanes wide as the machine; products and sums are fused and in a fixed order, so that bits depend on no machine. Of
-//! distances the sixteenth powers are taken: they have to be between 1e-19 and 1e19 metres.
+//! for r cosθ is the height of the *other* point above the plane. Every term is positive: nothing cancels. Cost: one division
+//! for four terms, as many lanes wide as the machine; products and sums are fused and in a fixed order, so that bits depend on
+//! no machine. Of distances the sixteenth powers are taken: they have to be between 1e-19 and 1e19 metres.
 
 use crate::geometry::Vec3;
 use pulp::{Arch, Simd, WithSimd};

@@ -1,5 +1,5 @@
-//! Exchange of two unoccluded polygons: product Gauss where they are apart, contours where they are not, and contours in double-double
-//! arithmetic where too much cancels in those.
+//! Exchange of two unoccluded polygons: product Gauss where they are apart, contours where they are not, and contours in
+//! double-double arithmetic where too much cancels in those.
 
 use super::apart::Apart;
 use super::clip::cut;
@@ -15,16 +15,17 @@ const CHEAP: usize = 8;
 /// The longest that is tried before contours in double-double.
 const DEAR: usize = 16;
 
-/// T of two polygons with nothing between them, each with its nodes, and an estimate of its error, both in m² sr; `None` where they do
-/// not face each other.
+/// T of two polygons with nothing between them, each with its nodes, and an estimate of its error, both in m² sr; `None` where
+/// they do not face each other.
 ///
 /// ```text
 /// T = ∫∫ cosθ cosθ' / r² dA dA'
 /// ```
 ///
-/// What of either lies behind the other's plane is cut off. The tolerance is relative to T and reached down to 1e-13 wherever T exceeds
-/// 1e-12 of both étendues; the estimate says so where it is not. Swapping the two changes no bit. Cost: 0.1 to 5 µs for polygons that
-/// are apart, 2 to 20 µs for others, 50 to 500 µs for those in whose contour integrals more cancels than the tolerance allows.
+/// What of either lies behind the other's plane is cut off. The tolerance is relative to T and reached down to 1e-13 wherever T
+/// exceeds 1e-12 of both étendues; the estimate says so where it is not. Swapping the two changes no bit. Cost: 0.1 to 5 µs for
+/// polygons that are apart, 2 to 20 µs for others, 50 to 500 µs for those in whose contour integrals more cancels than the
+/// tolerance allows.
 pub fn unoccluded(ladder: &Ladder, a: (&Polygon, &Nodes), b: (&Polygon, &Nodes), tolerance: f64) -> Option<(f64, f64)> {
     // Put them in an order of their own.
     let [a, b] = if precedes(b.0, a.0) { [b, a] } else { [a, b] };

@@ -16,8 +16,8 @@ pub fn gauss_legendre(n: usize) -> Rule {
     Rule { nodes, weights }
 }
 
-/// The same as pairs of node and weight, to the precision of the numbers: roots of Pₙ by Newton's method from Tricomi's estimate.
-/// `multiple` makes their number one of its multiples, by nodes of weight zero.
+/// The same as pairs of node and weight, to the precision of the numbers: roots of Pₙ by Newton's method from Tricomi's
+/// estimate. `multiple` makes their number one of its multiples, by nodes of weight zero.
 pub fn gauss_nodes<R: Real>(n: usize, multiple: usize) -> Vec<(R, R)> {
     let (one, half, degree) = (R::from(1.0), R::from(0.5), R::from(n as f64));
     let node = |k: usize| {

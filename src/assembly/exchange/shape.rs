@@ -56,8 +56,8 @@ impl Shape {
         (twice_area.value() > 0.0).then(|| area.scaled(Double::from(1.0) / twice_area))
     }
 
-    /// The points of a product rule, weighted by area. An area that varies along an axis costs the rule a degree there: such cells take
-    /// `longer` by one point, so that every shape is integrated alike.
+    /// The points of a product rule, weighted by area. An area that varies along an axis costs the rule a degree there: such
+    /// cells take `longer` by one point, so that every shape is integrated alike.
     pub fn points(&self, rule: &Rule, longer: &Rule) -> Points {
         let mut points = Points::default();
         for Cell { corners: [a, b, c, d], areas } in &self.cells {
