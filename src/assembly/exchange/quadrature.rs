@@ -32,8 +32,8 @@ pub fn unoccluded(ladder: &Ladder, a: (&Polygon, &Nodes), b: (&Polygon, &Nodes),
     let (origin_a, origin_b) = (a.0.vertices()[0], b.0.vertices()[0]);
 
     // See which side of each other's plane they are on.
-    let side_a = Side::of(a.0, b.1.shape.normal, origin_b);
-    let side_b = Side::of(b.0, a.1.shape.normal, origin_a);
+    let side_a = Side::of(a.0, b.1.shape.normal, b.0);
+    let side_b = Side::of(b.0, a.1.shape.normal, a.0);
     if side_a.highest <= 0.0 || side_b.highest <= 0.0 {
         return None;
     }
@@ -83,22 +83,21 @@ fn precedes(a: &Polygon, b: &Polygon) -> bool {
 }
 
 /// How a polygon lies to the plane of another.
-struct Side<'a> {
-    polygon: &'a Polygon,
-    normal: Vec3,
-    on_plane: Vec3,
+struct Side {
     highest: f64,
-    /// Nothing of it is behind.
+    /// Nothing of it is behind, and none of its corners so near the plane that rounding hides on which side.
     is_whole: bool,
 }
 
-impl<'a> Side<'a> {
-    fn of(polygon: &'a Polygon, normal: Vec3, on_plane: Vec3) -> Self {
-        let mut side = Self { polygon, normal, on_plane, highest: 0.0, is_whole: true };
+impl Side {
+    fn of(polygon: &Polygon, normal: Vec3, plane: &Polygon) -> Self {
+        let on_plane = plane.vertices()[0];
+        let mut side = Self { highest: 0.0, is_whole: true };
         for v in polygon.vertices() {
             let height = height(normal, on_plane, *v);
             side.highest = side.highest.max(height);
-            side.is_whole &= height >= 0.0;
+            let is_on = || normal.dot(*v - on_plane) == 0.0 || plane.vertices().contains(v);
+            side.is_whole &= height > 0.0 || (height == 0.0 && is_on());
         }
         side
     }
@@ -109,11 +108,11 @@ impl<'a> Side<'a> {
             return Some(corners.to_vec());
         }
         let normal = Shape::normal_of(plane)?;
-        let exact = |(v, corner): (&Vec3, &Vector<Double>)| match height(self.normal, self.on_plane, *v) {
-            0.0 => Double::default(),
-            _ => normal.dot(*corner - plane[0]),
-        };
-        let heights: Vec<Double> = self.polygon.vertices().iter().zip(corners).map(exact).collect();
+        // The corners of a triangle are in its plane, whatever rounding says.
+        let is_on = |corner: &Vector<Double>| plane.len() == 3 && plane.contains(corner);
+        let exact =
+            |corner: &Vector<Double>| if is_on(corner) { Double::default() } else { normal.dot(*corner - plane[0]) };
+        let heights: Vec<Double> = corners.iter().map(exact).collect();
         let part = cut(corners, &heights);
         (part.len() >= 3).then_some(part)
     }
