@@ -37,7 +37,7 @@ pub fn find(part: &[Vec3], target: &[Vec3], edges: &[Edge], points: &mut Vec<Vec
     }
     for &point in points.iter() {
         let apart = |edge: &Edge| edge.from != point && edge.to != point;
-        let constraints = || sides().chain(edges.iter().copied().filter(|edge| apart(edge)));
+        let constraints = || sides_of(target).chain(edges.iter().copied().filter(|edge| apart(edge)));
         for (k, edge) in constraints().enumerate() {
             let others = constraints().enumerate().filter(|(other, _)| *other != k).map(|(_, edge)| edge);
             add(part, normal, size, &edge, point, others, lines);
@@ -47,64 +47,33 @@ pub fn find(part: &[Vec3], target: &[Vec3], edges: &[Edge], points: &mut Vec<Vec
 
 /// True if, seen from somewhere in a cell with these corners, three edges of different outlines may pass each other in one direction: on a
 /// curve, where what is hidden bends inside the cell. The planes through x and the edges then share a line.
-pub fn is_kinked(corners: [Vec3; 4], target: &[Vec3], edges: &[Edge]) -> bool {
+///
+/// Nine points speak for the cell. Whether the crossing is in view is not asked, so that some cells are called kinked that are not.
+pub fn is_kinked([a, b, c, d]: [Vec3; 4], target: &[Vec3], edges: &[Edge]) -> bool {
     let owner = edges[0].owner;
     if edges.iter().all(|edge| edge.owner == owner) {
         return false;
     }
-    let [a, b, c, d] = corners;
     let centre = 0.25 * (a + b + c + d);
-    let paths = [(a, b), (b, c), (c, d), (d, a), (a, centre), (b, centre), (c, centre), (d, centre)];
-    let middle = target.iter().copied().sum::<Vec3>() / target.len() as f64;
-    let sides = (0..target.len()).map(|k| Edge { from: target[(k + 1) % target.len()], to: target[k], owner: TARGET });
-    let all = || edges.iter().copied().chain(sides.clone());
-    let n_edges = edges.len();
-    let is_event = |i: usize, j: usize, k: usize, third: &Edge| {
-        let crossing = |x: Vec3| edges[i].plane_from(x).cross(edges[j].plane_from(x));
-        let twist = |x: Vec3| third.plane_from(x).dot(crossing(x));
-        let heights = [a, b, c, d, centre].map(twist);
-        if heights.iter().all(|h| *h >= 0.0) || heights.iter().all(|h| *h <= 0.0) {
-            return false;
-        }
-        // Where the curve meets the sides and diagonals of the cell, the crossing may be out of view, outside some other edge.
-        let is_met = |(from, to): &&(Vec3, Vec3)| twist(*from) * twist(*to) <= 0.0;
-        let meeting = |(from, to): &(Vec3, Vec3)| root(*from, *to, &twist);
-        let is_outside = |other: &Edge| {
-            paths.iter().filter(is_met).map(meeting).all(|x| {
-                let crossing = crossing(x);
-                let plane = other.plane_from(x);
-                let towards = crossing.dot(middle - x).signum();
-                towards * plane.dot(crossing) < -CLEARLY * plane.length() * crossing.length()
-            })
-        };
-        !all().enumerate().any(|(l, other)| l != i && l != j && l != k && is_outside(&other))
+    let rim = [a, 0.5 * (a + b), b, 0.5 * (b + c), c, 0.5 * (c + d), d, 0.5 * (d + a)];
+    let is_met = |one: &Edge, two: &Edge, three: &Edge| {
+        let twist = |x: Vec3| three.plane_from(x).dot(one.plane_from(x).cross(two.plane_from(x)));
+        let middle = twist(centre);
+        rim.iter().any(|x| twist(*x) * middle <= 0.0)
     };
-    (0..n_edges).any(|i| {
-        (i + 1..n_edges).filter(|j| edges[*j].owner != edges[i].owner).any(|j| {
-            let apart = |third: &Edge| third.owner != edges[i].owner && third.owner != edges[j].owner;
-            all().enumerate().any(|(k, third)| k > j && apart(&third) && is_event(i, j, k, &third))
+    edges.iter().enumerate().any(|(i, one)| {
+        edges[i + 1..].iter().enumerate().filter(|(_, two)| two.owner != one.owner).any(|(j, two)| {
+            let apart = |three: &Edge| three.owner != one.owner && three.owner != two.owner;
+            let thirds = edges[i + 2 + j..].iter().copied().chain(sides_of(target));
+            thirds.filter(apart).any(|three| is_met(one, two, &three))
         })
     })
 }
 
-/// A zero of a function between two points where it differs in sign: a few steps of the regula falsi.
-fn root(mut from: Vec3, mut to: Vec3, function: &impl Fn(Vec3) -> f64) -> Vec3 {
-    let (mut low, mut high) = (function(from), function(to));
-    let mut middle = from;
-    for _ in 0..3 {
-        middle = if low == high { from } else { from + low / (low - high) * (to - from) };
-        let value = function(middle);
-        if value * low > 0.0 {
-            (from, low) = (middle, value);
-        } else {
-            (to, high) = (middle, value);
-        }
-    }
-    middle
+/// The sides of the target as edges that have it on their hidden side.
+fn sides_of(target: &[Vec3]) -> impl Iterator<Item = Edge> + Clone + '_ {
+    (0..target.len()).map(|k| Edge { from: target[(k + 1) % target.len()], to: target[k], owner: TARGET })
 }
-
-/// Sine of the angle by which a crossing must lie outside for the few points looked at to speak for the whole cell.
-const CLEARLY: f64 = 0.02;
 
 /// Owner of the sides of the target.
 const TARGET: usize = usize::MAX;

@@ -398,10 +398,8 @@ fn nature(corners: &[Vec3; 4], target: &[Vec3], edges: &[Edge], is_cut: bool) ->
     if !is_cut {
         return Nature::Kinked;
     }
-    if edges.len() > 1 {
-        if events::is_kinked(*corners, target, edges) {
-            return Nature::Kinked;
-        }
+    if edges.len() > 1 && events::is_kinked(*corners, target, edges) {
+        return Nature::Kinked;
     }
     let radius = corners.iter().map(|v| v.distance_squared(centre)).fold(0.0, f64::max).sqrt();
     Nature::Smooth { reach: clearance(centre, target, edges) / radius }
