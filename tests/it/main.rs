@@ -17,6 +17,7 @@ mod image;
 mod laws;
 mod medium;
 mod operators;
+mod orbits;
 mod patches;
 mod refinement;
 mod report;
