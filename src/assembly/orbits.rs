@@ -23,6 +23,8 @@ const COINCIDENT: f64 = 2e-13;
 pub struct Orbits {
     members: Vec<Vec<usize>>,
     orbit_of: Vec<Option<usize>>,
+    /// The image of every bundle that takes part, a list a symmetry.
+    symmetries: Vec<Vec<Option<usize>>>,
 }
 
 impl Orbits {
@@ -42,14 +44,18 @@ impl Orbits {
             }
         }
         let mut parent: Vec<usize> = (0..chosen.len()).collect();
+        let mut symmetries = Vec::new();
         for candidate in candidates {
             let Some(images) = permutation(&facets, candidate).and_then(|_| permutation(&patches, candidate)) else {
                 continue;
             };
+            let mut symmetry = vec![None; bundles.n_bundles()];
             for (k, image) in images.into_iter().enumerate() {
                 let (a, b) = (root(&mut parent, k), root(&mut parent, image));
                 parent[a.max(b)] = a.min(b);
+                symmetry[chosen[k]] = Some(chosen[image]);
             }
+            symmetries.push(symmetry);
         }
 
         // Number the roots in their order; a root comes before all others of its orbit.
@@ -64,7 +70,7 @@ impl Orbits {
             orbit_of[bundle] = Some(orbit);
             members[orbit].push(bundle);
         }
-        Self { members, orbit_of }
+        Self { members, orbit_of, symmetries }
     }
 
     /// Number of orbits.
@@ -75,6 +81,25 @@ impl Orbits {
     /// The bundles of an orbit, ascending.
     pub fn members(&self, orbit: usize) -> &[usize] {
         &self.members[orbit]
+    }
+
+    /// What a bundle sees of an orbit, one of each kind: symmetries that leave the bundle where it is carry members into members that
+    /// exchange as much with it. Each with their number.
+    pub fn seen_from(&self, bundle: usize, orbit: usize) -> Vec<(usize, usize)> {
+        let members = &self.members[orbit];
+        let mut parent: Vec<usize> = (0..members.len()).collect();
+        for symmetry in self.symmetries.iter().filter(|symmetry| symmetry[bundle] == Some(bundle)) {
+            for (k, member) in members.iter().enumerate() {
+                let Some(image) = symmetry[*member].and_then(|image| members.binary_search(&image).ok()) else {
+                    continue;
+                };
+                let (a, b) = (root(&mut parent, k), root(&mut parent, image));
+                parent[a.max(b)] = a.min(b);
+            }
+        }
+        let mut count = vec![0; members.len()];
+        (0..members.len()).for_each(|k| count[root(&mut parent, k)] += 1);
+        (0..members.len()).filter(|k| count[*k] > 0).map(|k| (members[k], count[k])).collect()
     }
 
     /// The orbit of a bundle; `None` where its surface was left out.

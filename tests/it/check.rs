@@ -107,3 +107,63 @@ fn a_polygon_that_is_none_fails_its_case_and_names_itself() {
     let Verdict::Fail(Some(reason)) = cases::run(&read[0]).verdict else { panic!("a line is no polygon") };
     assert!(reason.contains("polygon_2") && reason.contains("zero area"), "{reason}");
 }
+
+/// A case of one value set as the program is asked for it, at parameters that no file of cases holds.
+fn fresh(kind: &str, fields: Value, values: Value) -> Value {
+    let mut geometry = fields;
+    geometry["type"] = kind.into();
+    json!({ "id": kind, "group": "A", "family": "fresh", "digits_certain": 14, "geometry": geometry, "values": values })
+}
+
+/// Round shapes against textbook closed forms: within the estimate, which is at most 1e-6.
+#[test]
+fn round_shapes_of_other_sizes_have_their_closed_forms() {
+    // Coaxial disks: Howell C-41.
+    let disks = |r1: f64, r2: f64, h: f64| {
+        let (a, b) = (r1 / h, r2 / h);
+        let x = 1.0 + (1.0 + b * b) / (a * a);
+        0.5 * (x - (x * x - 4.0 * (b / a).powi(2)).sqrt())
+    };
+    // A sphere over the middle of a disk: Howell C-127.
+    let sphere = |disk: f64, h: f64| 0.5 * (1.0 - 1.0 / (1.0 + (disk / h).powi(2)).sqrt());
+    // A cone on its base: all that leaves the base arrives.
+    let cone = |radius: f64, height: f64| radius / radius.hypot(height);
+    let cases = [
+        fresh("coaxial_disks", json!({ "r1": 0.7, "r2": 1.3, "h": 0.45 }), json!({ "F_12": disks(0.7, 1.3, 0.45) })),
+        fresh("coaxial_disks", json!({ "r1": 2.0, "r2": 1.5, "h": 0.03 }), json!({ "F_12": disks(2.0, 1.5, 0.03) })),
+        fresh(
+            "sphere_disk",
+            json!({ "sphere_radius": 0.4, "disk_radius": 1.7, "h_center_to_disk": 0.9 }),
+            json!({ "F_sphere_disk": sphere(1.7, 0.9) }),
+        ),
+        fresh(
+            "cone_interior",
+            json!({ "base_radius": 0.8, "height": 0.6 }),
+            json!({ "F_lateral_base": cone(0.8, 0.6) }),
+        ),
+        fresh(
+            "concentric_spheres",
+            json!({ "r_inner": 0.7, "r_outer": 1.0 }),
+            json!({ "F_12": 1.0, "F_21": 0.49, "F_22": 0.51 }),
+        ),
+        fresh(
+            "concentric_spheres",
+            json!({ "r_inner": 0.6, "r_outer": 1.0, "rho": [0.0, 0.5], "E": [1.0, 0.0] }),
+            // H_2 = 0.36 B_1 + 0.64 B_2, so B_2 = 0.18 / (1 − 0.32).
+            json!({ "B1": 1.0, "B2": 0.18 / 0.68, "q1": 1.0 - 0.18 / 0.68 }),
+        ),
+        // Between zones of one sphere the form factor is the share of area: (cos 20° − cos 75°) / 2.
+        fresh(
+            "sphere_zones",
+            json!({ "radius": 0.3, "zone_1_deg": [100, 150], "zone_2_deg": [20, 75] }),
+            json!({ "F_12": 0.5 * (20f64.to_radians().cos() - 75f64.to_radians().cos()) }),
+        ),
+    ];
+    for (k, mut case) in cases.into_iter().enumerate() {
+        case["id"] = format!("fresh-{k}").into();
+        let read = cases::read(&json!([case]).to_string()).expect("a well-formed file");
+        let outcome = cases::run(&read[0]);
+        assert_eq!(outcome.verdict, Verdict::Pass, "{outcome:#?}");
+        assert!(outcome.estimate.is_some_and(|estimate| estimate <= 1e-6), "{outcome:#?}");
+    }
+}

@@ -18,6 +18,7 @@ mod image;
 mod laws;
 mod medium;
 mod operators;
+mod orbits;
 mod pairs;
 mod patches;
 mod refinement;

@@ -99,9 +99,12 @@ pub(in crate::assembly) fn compute(
             let mut row = Vec::new();
             for j in (i..n).filter(|j| asked(i, *j)) {
                 let (mine, other) = (orbits.members(i), orbits.members(j));
-                let (one, all) = if mine.len() >= other.len() { (mine, other) } else { (other, mine) };
+                let (one, all) = if mine.len() >= other.len() { (mine, j) } else { (other, i) };
                 let mut total = Sum::default();
-                all.iter().filter_map(|k| pair(desk, one[0].min(*k), one[0].max(*k))).for_each(|sum| total.add(&sum));
+                for (k, count) in orbits.seen_from(one[0], all) {
+                    let sum = pair(desk, one[0].min(k), one[0].max(k));
+                    sum.into_iter().for_each(|sum| total.add(&sum, count as f64));
+                }
                 if total.n_pairs > 0 {
                     total.scale(one.len() as f64);
                     row.push((j as u32, total));
@@ -147,11 +150,12 @@ pub(in crate::assembly) fn compute(
 }
 
 impl Sum {
-    fn add(&mut self, other: &Sum) {
-        self.value += other.value;
-        self.error += other.error;
-        self.occlusion_error += other.occlusion_error;
-        self.variance += other.variance;
+    /// Adds so many alike.
+    fn add(&mut self, other: &Sum, count: f64) {
+        self.value += count * other.value;
+        self.error += count * other.error;
+        self.occlusion_error += count * other.occlusion_error;
+        self.variance += count * count * other.variance;
         self.n_pairs += other.n_pairs;
         self.n_clear += other.n_clear;
         self.n_hidden += other.n_hidden;

@@ -8,7 +8,7 @@ use super::model::{Body, Model, Probe, Shape, WHOLE};
 use super::reader::Case;
 use super::revolution::{Facing, joined, line, revolve, sectors};
 use super::round::{ACCURACY, ENOUGH, lengths};
-use super::symmetry::{mirror, of_a_box, turn};
+use super::symmetry::{mirror, of_a_box, of_sectors};
 use super::value::Value;
 use crate::geometry::{Polygon, Vec3};
 use std::f64::consts::PI;
@@ -138,7 +138,7 @@ pub fn facing_disks(case: &Case) -> Result<Answers, CaseError> {
             Ok::<_, CaseError>(Body { albedo: surfaces[k].0, exitance: surfaces[k].1, ..Body::black(polygons) })
         };
         let bodies = vec![disk(0, r1, 0.0, Facing::Left)?, disk(1, r2, h, Facing::Right)?];
-        let shape = Shape { bodies, symmetries: vec![turn(n_sectors)] };
+        let shape = Shape { bodies, symmetries: of_sectors(n_sectors) };
         let model = Model::folded(shape, WHOLE, |from, to| from != to, ACCURACY)?;
         let radiance = model.radiance()?;
         let mut values = model.gathered(&radiance, &probes);
@@ -166,7 +166,7 @@ pub fn tube(case: &Case) -> Result<Answers, CaseError> {
             |share: f64| Probe { surface: 0, point: foot + share * length * Vec3::Z, normal: -foot.normalize() };
         let shape = Shape {
             bodies: vec![Body { albedo, exitance, ..Body::black(wall) }],
-            symmetries: vec![turn(n_sectors), mirror(0.5 * length * Vec3::Z, Vec3::Z)],
+            symmetries: [of_sectors(n_sectors), vec![mirror(0.5 * length * Vec3::Z, Vec3::Z)]].concat(),
         };
         let model = Model::folded(shape, WHOLE, |_, _| true, ACCURACY)?;
         let radiance = model.radiance()?;
@@ -204,7 +204,7 @@ pub fn cylindrical_cavity(case: &Case) -> Result<Answers, CaseError> {
         let base = revolve(&on_base, &sectors(n_sectors), Facing::Right)?;
         let wall = revolve(&on_wall.collect::<Vec<_>>(), &sectors(n_sectors), Facing::Left)?;
         let bodies = [base, wall].map(|polygons| Body { albedo, exitance, ..Body::black(polygons) }).to_vec();
-        let shape = Shape { bodies, symmetries: vec![turn(n_sectors)] };
+        let shape = Shape { bodies, symmetries: of_sectors(n_sectors) };
         let model = Model::folded(shape, WHOLE, |_, _| true, ACCURACY)?;
         let radiance = model.radiance()?;
         let centre = Probe { surface: 0, point: Vec3::ZERO, normal: Vec3::Z };

@@ -7,7 +7,7 @@ use super::limit::{EVEN, HORIZON, Refinement, refine};
 use super::model::{Body, Model, Shape, WHOLE};
 use super::reader::{Case, Geometry};
 use super::revolution::{Facing, arc, disk, joined, revolve, sectors};
-use super::symmetry::{of_a_box, turn};
+use super::symmetry::{of_a_box, of_sectors};
 use crate::geometry::{Frame, Polygon, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -20,8 +20,14 @@ pub const SECTORS: usize = 8;
 /// Error at which refinement ends: well below what passes.
 pub const ENOUGH: f64 = 3e-7;
 
+/// The same where every level is dear.
+pub const DEAR: f64 = 9e-7;
+
 /// Absolute error of a row of form factors.
 pub const ACCURACY: f64 = 1e-9;
+
+/// Parts of a sphere that stands in the way are not narrower than this: shadows of many rings are dear.
+const NARROW: f64 = 0.2;
 
 /// What a case asks for: its name, and the surfaces from and to which the form factor is.
 type Wanted = [(&'static str, usize, usize)];
@@ -58,9 +64,14 @@ fn resolving(radius: f64, gap: f64) -> Refinement<'static> {
     Refinement { levels: &LEVELS[first..(first + 8).max(14)], ..even(0) }
 }
 
+/// Past something round every level is dear: they rise slowly, and end as soon as they may.
+fn blocked() -> Refinement<'static> {
+    Refinement { levels: &[1, 2, 3, 4, 5, 6, 7, 8], powers: EVEN, enough: DEAR }
+}
+
 /// Surfaces with the symmetry of the level's sectors.
 fn turned(level: usize, surfaces: Vec<Vec<Polygon>>) -> Shape {
-    Shape { bodies: surfaces.into_iter().map(Body::black).collect(), symmetries: vec![turn(SECTORS * level)] }
+    Shape { bodies: surfaces.into_iter().map(Body::black).collect(), symmetries: of_sectors(SECTORS * level) }
 }
 
 /// A disk about the z axis at this height, facing up or down, in a triangle a sector.
@@ -81,6 +92,21 @@ fn broken_arc(radius: f64, [from, to]: [f64; 2], breaks: &[f64], level: usize) -
     ends.extend([from, to]);
     ends.sort_by(f64::total_cmp);
     joined(ends.windows(2).map(|pair| arc(radius, [pair[0], pair[1]], n_rings(pair[1] - pair[0], level))))
+}
+
+/// A closed sphere about a point of the z axis that stands in the way, with rings that end at those breaks which are well apart.
+fn blocking_ball(radius: f64, height: f64, breaks: &[f64], level: usize) -> Result<Body, CaseError> {
+    let mut ends: Vec<f64> = breaks.iter().copied().filter(|angle| *angle < PI - NARROW).collect();
+    ends.sort_by(f64::total_cmp);
+    let mut last = 0.0;
+    ends.retain(|angle| {
+        let is_apart = *angle > last + NARROW;
+        last = if is_apart { *angle } else { last };
+        is_apart
+    });
+    let profile = broken_arc(radius, [0.0, PI], &ends, level);
+    let lifted: Vec<[f64; 2]> = profile.into_iter().map(|[r, z]| [r, z + height]).collect();
+    Ok(Body::occluder(revolve(&lifted, &sectors(SECTORS * level), Facing::Left)?))
 }
 
 /// A closed sphere about the origin.
@@ -138,18 +164,16 @@ pub fn coaxial_disks_blocked(case: &Case) -> Result<Answers, CaseError> {
     let mut breaks = horizons(radius, r2, h - height);
     breaks.extend(horizons(radius, r1, height).into_iter().map(|angle| PI - angle));
     let blocker = |level: usize| {
-        if !is_sphere {
-            let frame = Frame { x: Vec3::X, y: Vec3::Y, z: Vec3::Z };
-            return Ok(vec![disk(&frame, height * Vec3::Z, radius, &sectors(SECTORS * level))?]);
+        if is_sphere {
+            return blocking_ball(radius, height, &breaks, level);
         }
-        let profile = broken_arc(radius, [0.0, PI], &breaks, level);
-        let lifted: Vec<[f64; 2]> = profile.into_iter().map(|[r, z]| [r, z + height]).collect();
-        revolve(&lifted, &sectors(SECTORS * level), Facing::Left)
+        let frame = Frame { x: Vec3::X, y: Vec3::Y, z: Vec3::Z };
+        Ok(Body::occluder(vec![disk(&frame, height * Vec3::Z, radius, &sectors(SECTORS * level))?]))
     };
     let open = |level| Ok(turned(level, vec![level_disk(r1, 0.0, true, level)?, level_disk(r2, h, false, level)?]));
-    let mut answers = factors(even(9), &[("F_12", 0, 1)], |level| {
+    let mut answers = factors(blocked(), &[("F_12", 0, 1)], |level| {
         let mut shape = open(level)?;
-        shape.bodies.push(Body::occluder(blocker(level)?));
+        shape.bodies.push(blocker(level)?);
         Ok(shape)
     })?;
     answers.values.extend(factors(resolving(r1.max(r2), h), &[("F_12_unoccluded", 0, 1)], open)?.values);
@@ -183,16 +207,18 @@ pub fn sphere_rectangle(case: &Case) -> Result<Answers, CaseError> {
     })
 }
 
-/// Two concentric spheres of the same facets: what they exchange has the ratio of their areas at any level.
-pub fn nested_balls(inner: f64, outer: f64, level: usize) -> Result<[Vec<Polygon>; 2], CaseError> {
-    Ok([ball(inner, level, Facing::Left)?, ball(outer, level, Facing::Right)?])
+/// Two concentric spheres in the same sectors and rings.
+pub fn nested_balls(inner: f64, outer: f64, n_sectors: usize, n_rings: usize) -> Result<[Vec<Polygon>; 2], CaseError> {
+    let ball = |radius, facing| revolve(&arc(radius, [0.0, PI], n_rings), &sectors(n_sectors), facing);
+    Ok([ball(inner, Facing::Left)?, ball(outer, Facing::Right)?])
 }
 
-/// `concentric_spheres`.
+/// `concentric_spheres`. With the same facets, what spheres exchange has the ratio of their areas at any level: two are enough.
 pub fn concentric_spheres(case: &Case) -> Result<Answers, CaseError> {
     let [inner, outer] = lengths(&case.geometry, ["r_inner", "r_outer"])?;
-    factors(even(3), &[("F_12", 0, 1), ("F_21", 1, 0), ("F_22", 1, 1)], |level| {
-        Ok(turned(level, nested_balls(inner, outer, level)?.into()))
+    factors(even(2), &[("F_12", 0, 1), ("F_21", 1, 0), ("F_22", 1, 1)], |level| {
+        let bodies = nested_balls(inner, outer, SECTORS * level, 4 * level)?.map(Body::black).into();
+        Ok(Shape { bodies, symmetries: of_sectors(SECTORS * level) })
     })
 }
 
@@ -221,9 +247,12 @@ pub fn sphere_zones_blocked(case: &Case) -> Result<Answers, CaseError> {
     let [radius, inner] = lengths(&case.geometry, ["R", "r_inner"])?;
     let zones = [case.geometry.interval("zone_1_deg")?, case.geometry.interval("zone_2_deg")?];
     let open = |level| Ok(turned(level, vec![zone(radius, zones[0], level)?, zone(radius, zones[1], level)?]));
-    let mut answers = factors(even(7), &[("F_12", 0, 1)], |level| {
+    // Rings of the smaller sphere end where its planes touch an end of a zone.
+    let rims = zones.iter().flatten().map(|degrees| degrees.to_radians().sin_cos());
+    let breaks: Vec<f64> = rims.flat_map(|(sine, cosine)| horizons(inner, radius * sine, radius * cosine)).collect();
+    let mut answers = factors(blocked(), &[("F_12", 0, 1)], |level| {
         let mut shape = open(level)?;
-        shape.bodies.push(Body::occluder(ball(inner, level, Facing::Left)?));
+        shape.bodies.push(blocking_ball(inner, 0.0, &breaks, level)?);
         Ok(shape)
     })?;
     answers.values.extend(factors(even(9), &[("F_12_unoccluded", 0, 1)], open)?.values);

@@ -7,8 +7,8 @@ use super::limit::{EVEN, Limit, Refinement, refine};
 use super::model::{Body, Model, Shape, WHOLE};
 use super::reader::Case;
 use super::revolution::{Facing, arc, revolve, sectors};
-use super::round::{ACCURACY, ENOUGH, LEVELS, SECTORS, lengths, n_rings, nested_balls};
-use super::symmetry::turn;
+use super::round::{ACCURACY, DEAR, ENOUGH, LEVELS, SECTORS, lengths, n_rings, nested_balls};
+use super::symmetry::of_sectors;
 use super::value::Value;
 use crate::geometry::Polygon;
 use std::f64::consts::PI;
@@ -66,7 +66,7 @@ pub fn sphere_patches(case: &Case) -> Result<Answers, CaseError> {
             revolve(&profile, &sectors(n_sectors), Facing::Right).map(Body::black)
         };
         let bodies = bands.iter().map(band).collect::<Result<Vec<_>, _>>()?;
-        let model = Model::folded(Shape { bodies, symmetries: vec![turn(n_sectors)] }, WHOLE, |_, _| true, ACCURACY)?;
+        let model = Model::folded(Shape { bodies, symmetries: of_sectors(n_sectors) }, WHOLE, |_, _| true, ACCURACY)?;
         let (factors, areas) = (model.form_factors(), model.areas());
         let whole: f64 = areas.iter().sum();
         let mean = |values: &[f64]| values.iter().zip(areas).map(|(value, area)| value * area).sum::<f64>() / whole;
@@ -121,7 +121,7 @@ pub fn spherical_cavity(case: &Case) -> Result<Answers, CaseError> {
         let profile = arc(radius, [opening, PI], n_rings(PI - opening, level));
         let wall = revolve(&profile, &sectors(n_sectors), Facing::Right)?;
         let body = Body { albedo: 1.0 - emissivity, exitance: emissivity, ..Body::black(wall) };
-        let shape = Shape { bodies: vec![body], symmetries: vec![turn(n_sectors)] };
+        let shape = Shape { bodies: vec![body], symmetries: of_sectors(n_sectors) };
         let model = Model::folded(shape, WHOLE, |_, _| true, ACCURACY)?;
         let radiance = model.radiance()?;
         let (mean, incident, area) = (model.radiosity(&radiance)[0], model.irradiance(&radiance)[0], model.areas()[0]);
@@ -134,16 +134,16 @@ pub fn spherical_cavity(case: &Case) -> Result<Answers, CaseError> {
     Ok(named(&["eps_apparent", "wall_fraction", "flux_through_aperture_over_Eb_R2"], &limits))
 }
 
-/// `concentric_spheres` with albedos: each sphere is one unknown.
+/// `concentric_spheres` with albedos: each sphere is one unknown. See [`concentric_spheres`](super::round::concentric_spheres) for the levels.
 pub fn grey(case: &Case) -> Result<Answers, CaseError> {
     let [inner, outer] = lengths(&case.geometry, ["r_inner", "r_outer"])?;
     let (albedo, exitance) = (case.geometry.numbers("rho")?, case.geometry.numbers("E")?);
     if albedo.len() != 2 || exitance.len() != 2 {
         return Err(CaseError::Geometry { field: "rho".to_string(), problem: "and 'E' must have two numbers each" });
     }
-    let limits = refine(refinement(3), |level| {
-        let bodies = nested_balls(inner, outer, level)?.map(Body::black).into();
-        let shape = Shape { bodies, symmetries: vec![turn(SECTORS * level)] };
+    let limits = refine(refinement(2), |level| {
+        let bodies = nested_balls(inner, outer, SECTORS * level, 4 * level)?.map(Body::black).into();
+        let shape = Shape { bodies, symmetries: of_sectors(SECTORS * level) };
         let model = Model::folded(shape, WHOLE, |_, _| true, ACCURACY)?;
         let (b, h) = constant_on_surfaces(&model.form_factors(), &albedo, &exitance)?;
         let absorbed = 1.0 - albedo[0].max(albedo[1]);
@@ -187,7 +187,8 @@ pub fn zonal(case: &Case) -> Result<Answers, CaseError> {
     if case.geometry.number("E_inner")? != 0.0 {
         return Err(CaseError::Needs("an inner sphere that does not emit"));
     }
-    let limits = refine(refinement(8), |level| {
+    let dear = Refinement { levels: &[1, 2, 3, 4, 5, 6, 7, 8], powers: EVEN, enough: DEAR };
+    let limits = refine(dear, |level| {
         let (n_sectors, n_rings) = (SECTORS * level, n_rings(PI, level));
         let zonal: Vec<f64> = (0..n_rings)
             .map(|ring| {
@@ -197,7 +198,7 @@ pub fn zonal(case: &Case) -> Result<Answers, CaseError> {
             .collect();
 
         // A body for every ring: those of the inner sphere first.
-        let spheres = nested_balls(inner, outer, level)?;
+        let spheres = nested_balls(inner, outer, n_sectors, n_rings)?;
         let ring = |sphere: usize, polygons: &[Polygon], ring: usize| {
             let exitance = if sphere == 0 { 0.0 } else { 1.0 + zonal[ring] };
             Body { albedo: albedo[sphere], exitance, ..Body::black(polygons.to_vec()) }
@@ -207,7 +208,7 @@ pub fn zonal(case: &Case) -> Result<Answers, CaseError> {
             rings.map(|(k, polygons)| ring(sphere, polygons, k)).collect::<Vec<_>>()
         };
         let bodies = rings(0).into_iter().chain(rings(1)).collect();
-        let shape = Shape { bodies, symmetries: vec![turn(n_sectors)] };
+        let shape = Shape { bodies, symmetries: of_sectors(n_sectors) };
         let model = Model::folded(shape, WHOLE, |_, _| true, ACCURACY)?;
         let radiance = model.radiance()?;
         let (b, flows, areas) = (model.radiosity(&radiance), model.flows(), model.areas());

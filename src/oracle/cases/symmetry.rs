@@ -8,6 +8,12 @@ pub fn turn(n: usize) -> Affine3 {
     Affine3::from_mat3(Mat3::from_rotation_z(TAU / n as f64))
 }
 
+/// The symmetries of n equal sectors from the x axis on: the turn, and the reflection that leaves the first sector where it is.
+pub fn of_sectors(n: usize) -> Vec<Affine3> {
+    let (sine, cosine) = (0.5 * TAU / n as f64).sin_cos();
+    vec![turn(n), mirror(Vec3::ZERO, Vec3::new(-sine, cosine, 0.0))]
+}
+
 /// The reflection at the plane through a point with this unit normal: x ↦ x − 2 n (n·(x − p)).
 pub fn mirror(point: Vec3, normal: Vec3) -> Affine3 {
     let image = |v: Vec3| v - 2.0 * normal.dot(v) * normal;
