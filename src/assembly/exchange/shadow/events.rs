@@ -12,8 +12,6 @@ pub fn find(part: &[Vec3], target: &[Vec3], edges: &[Edge], points: &mut Vec<Vec
     }
     let normal = (part[1] - part[0]).cross(part[2] - part[0]).normalize_or_zero();
     let size = size_of(part);
-    let sides =
-        || (0..target.len()).map(|k| Edge { from: target[(k + 1) % target.len()], to: target[k], owner: TARGET });
 
     // Where an obstacle's edge passes a corner of the target.
     for (e, edge) in edges.iter().enumerate() {
