@@ -53,7 +53,7 @@ fn plates_on_orbits_have_the_radiance_and_the_exchange_that_they_have_in_full() 
         }
         // T_IJ is the sum of all pairs.
         let mut row = vec![0.0; n_orbits];
-        for i in 0..n_orbits {
+        for (i, error) in error.iter().enumerate() {
             folded.exchange().row(0, i, &mut row);
             for (j, value) in row.iter().enumerate() {
                 let mut sum = 0.0;
@@ -64,7 +64,7 @@ fn plates_on_orbits_have_the_radiance_and_the_exchange_that_they_have_in_full() 
                 }
                 assert!((value - sum).abs() <= 1e-12 * folded.etendue()[i], "{i} {j}: {value} {sum}");
             }
-            assert!(error[i] < 1e-11 * folded.etendue()[i]);
+            assert!(*error < 1e-11 * folded.etendue()[i]);
         }
     }
 }
