@@ -69,12 +69,15 @@ struct Joints<'a> {
     flat: Forest,
     /// Facets joined at all share a number.
     solid: Forest,
+    /// Heights that are rounding.
+    grain: f64,
 }
 
 impl<'a> Joints<'a> {
     fn of(polygons: &'a [&'a Polygon]) -> Self {
         // Look up every edge run the other way.
-        let welded = weld(polygons);
+        let grain = grain(polygons);
+        let welded = weld(polygons, grain);
         let edges = |facet: usize| {
             let v: &[Vec3] = &welded[facet];
             (0..v.len()).map(move |k| (v[k], v[(k + 1) % v.len()]))
@@ -94,11 +97,11 @@ impl<'a> Joints<'a> {
                     .map(|(from, to)| {
                         let alone = run[&(bits(from), bits(to))].1 == 1;
                         let other = run.get(&(bits(to), bits(from))).filter(|(other, count)| {
-                            alone && *count == 1 && *other != facet && bends_away(polygon, polygons[*other])
+                            alone && *count == 1 && *other != facet && bends_away(polygon, polygons[*other], grain)
                         });
                         if let Some((other, _)) = other {
                             solid.join(facet, *other);
-                            if is_flat(polygon, polygons[*other]) {
+                            if is_flat(polygon, polygons[*other], grain) {
                                 flat.join(facet, *other);
                             }
                         }
@@ -107,7 +110,7 @@ impl<'a> Joints<'a> {
                     .collect()
             })
             .collect();
-        Self { polygons, sides, flat, solid }
+        Self { polygons, sides, flat, solid, grain }
     }
 
     /// The bodies of more than one facet.
@@ -181,13 +184,13 @@ impl<'a> Joints<'a> {
             let origin = outline[0];
             let twice: Vec3 = outline.windows(2).map(|pair| (pair[0] - origin).cross(pair[1] - origin)).sum();
             let plane = Plane { normal: twice.try_normalize()?, point: origin };
-            if outline.iter().any(|v| plane.height(*v) != 0.0) {
+            if outline.iter().any(|v| plane.height(*v).abs() > self.grain) {
                 return None;
             }
             faces.push(plane);
             rims.extend(open);
         }
-        if faces.iter().any(|face| corners.iter().any(|v| face.height(*v) > 0.0)) {
+        if faces.iter().any(|face| corners.iter().any(|v| face.height(*v) > self.grain)) {
             return None;
         }
         Some(Body::new(faces, straight(rims), corners, opening))
@@ -206,16 +209,20 @@ impl<'a> Joints<'a> {
         let body = Body::flat(walk(&open)?, normal)?;
         let leans_in = |rim: &Rim| {
             let inward = normal.cross(rim.to - rim.from).normalize_or_zero();
-            body.corners.iter().all(|v| height(inward, rim.from, *v) >= 0.0)
+            body.corners.iter().all(|v| height(inward, rim.from, *v) >= -self.grain)
         };
         body.rims.iter().all(leans_in).then_some(body)
     }
 }
 
+/// What rounding may do to coordinates: 64 ulp of the largest.
+fn grain(polygons: &[&Polygon]) -> f64 {
+    let corners = polygons.iter().flat_map(|p| p.vertices());
+    64.0 * f64::EPSILON * corners.map(|v| v.abs().max_element()).fold(f64::MIN_POSITIVE, f64::max)
+}
+
 /// Corners of every polygon, those moved together that differ by rounding alone.
-fn weld(polygons: &[&Polygon]) -> Vec<Vec<Vec3>> {
-    let corners = || polygons.iter().flat_map(|p| p.vertices());
-    let grain = 64.0 * f64::EPSILON * corners().map(|v| v.abs().max_element()).fold(f64::MIN_POSITIVE, f64::max);
+fn weld(polygons: &[&Polygon], grain: f64) -> Vec<Vec<Vec3>> {
     // Look for a known corner in the grid cell of this one and in those that rounding could have moved it to.
     let cell = |v: Vec3| (v / (4.0 * grain)).round().to_array().map(|x| x as i64);
     let mut known: HashMap<[i64; 3], Vec3> = HashMap::new();
@@ -284,14 +291,15 @@ fn straight(rims: Vec<Rim>) -> Vec<Rim> {
 }
 
 /// True if each facet lies behind the other's plane or in it.
-fn bends_away(a: &Polygon, b: &Polygon) -> bool {
-    let behind = |p: &Polygon, q: &Polygon| p.vertices().iter().all(|v| height(q.normal(), q.centroid(), *v) <= 0.0);
+fn bends_away(a: &Polygon, b: &Polygon, grain: f64) -> bool {
+    let behind = |p: &Polygon, q: &Polygon| p.vertices().iter().all(|v| height(q.normal(), q.centroid(), *v) <= grain);
     behind(a, b) && behind(b, a)
 }
 
 /// True if the two facets lie in one plane and face the same way.
-fn is_flat(a: &Polygon, b: &Polygon) -> bool {
-    let within = |p: &Polygon, q: &Polygon| p.vertices().iter().all(|v| height(q.normal(), q.centroid(), *v) == 0.0);
+fn is_flat(a: &Polygon, b: &Polygon, grain: f64) -> bool {
+    let within =
+        |p: &Polygon, q: &Polygon| p.vertices().iter().all(|v| height(q.normal(), q.centroid(), *v).abs() <= grain);
     a.normal().dot(b.normal()) > 0.0 && within(a, b) && within(b, a)
 }
 

@@ -93,8 +93,11 @@ impl Body {
         self.corners.iter().all(|v| plane.height(*v) <= 0.0)
     }
 
-    /// True if the polygon, with this normal, is outside: beyond some face, or on it and facing away.
+    /// True if the polygon, with this normal, is outside: beyond some face, or on it and facing away, or with the whole body before it.
     pub fn excludes(&self, polygon: &[Vec3], normal: Vec3) -> bool {
+        if self.corners.iter().all(|v| height(normal, polygon[0], *v) > 0.0) {
+            return true;
+        }
         self.faces.iter().any(|face| {
             let heights = || polygon.iter().map(|v| face.height(*v));
             heights().all(|h| h >= 0.0) && (heights().any(|h| h > 0.0) || normal.dot(face.normal) > 0.0)

@@ -15,7 +15,7 @@ const CAUTION: f64 = 8.0;
 /// Where the error falls no faster than this, cells that touch a singularity or hold kinks, the change from rule to rule is all there is to
 /// go by, times the doubt.
 const SLOWEST: f64 = 0.5;
-const DOUBT: f64 = 4.0;
+const DOUBT: f64 = 16.0;
 
 /// Points a pair may cost.
 const MOST_POINTS: usize = 100_000;
