@@ -228,7 +228,7 @@ fn cube_radiosity(side: f64, albedo: f64, n: usize, grading: f64, accuracy: f64)
         if s <= 0.5 { 0.5 * (2.0 * s).powf(grading) } else { 1.0 - 0.5 * (2.0 * (1.0 - s)).powf(grading) }
     };
     // Equal cells are cut by the basis.
-    let n_cut = if grading == 1.0 { 1 } else { n };
+    let (n_cut, patch_size) = if grading == 1.0 { (1, side / n as f64) } else { (n, WHOLE) };
     let span = |k: usize| if n_cut == 1 { [0.0, 1.0] } else { [at(k), at(k + 1)] };
     let face = |face: &cube::Face| {
         (0..n_cut * n_cut).map(|k| face.cell(span(k / n_cut), span(k % n_cut))).collect::<Result<Vec<_>, _>>()
@@ -237,7 +237,7 @@ fn cube_radiosity(side: f64, albedo: f64, n: usize, grading: f64, accuracy: f64)
     let body = |polygons: Vec<Polygon>, exitance| Body { albedo, exitance, ..Body::black(polygons) };
     let bodies = vec![body(faces[0].clone(), 1.0), body(faces[1].clone(), 0.0), body(faces[2..].concat(), 0.0)];
     let shape = Shape { bodies, symmetries: of_a_box(Vec3::splat(0.5 * side), Vec3::X, Vec3::Y) };
-    let model = Model::folded(shape, side / n as f64, |_, _| true, accuracy)?;
+    let model = Model::folded(shape, patch_size, |_, _| true, accuracy)?;
     let radiance = model.radiance()?;
     Ok((model.radiosity(&radiance), model.radiosity_noise(&radiance)))
 }
