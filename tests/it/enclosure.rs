@@ -31,7 +31,9 @@ fn reference_form_factors_lie_between_the_bounds() {
     for pair in CLEAR {
         let [a, b] = [polygon(pair.first), polygon(pair.second)];
         let bounds = enclose(&a, &b);
-        assert!(bounds.holds(pair.form_factor * PI * a.area(), ROUNDING), "{}: {bounds:?}", pair.id);
+        // The last digit that is certain, where those are few.
+        let certain = ROUNDING.max(0.5 * 0.1f64.powi(pair.digits - 1));
+        assert!(bounds.holds(pair.form_factor * PI * a.area(), certain), "{}: {bounds:?}", pair.id);
         assert!(bounds.relative_width() < 1e-15, "{}: {:e}", pair.id, bounds.relative_width());
     }
 }

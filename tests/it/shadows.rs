@@ -25,10 +25,11 @@ fn exchange(scene: &Scene, patch_size: f64, tolerance: f64) -> System {
     assemble(scene, &bundles, settings).unwrap()
 }
 
-/// The error that a system states for its one integrated pair 0, 1: counted at both ends in a mean square over all bundles.
+/// The error that a system states for the pair 0, 1.
 fn estimate(system: &System) -> f64 {
-    let weights: f64 = system.etendue()[..2].iter().map(|mu| mu.powi(-2)).sum();
-    system.report().visibility_error * (system.n_bundles() as f64 / weights).sqrt()
+    let mut row = vec![0.0; system.n_bundles()];
+    system.exchange_error().row(0, 0, &mut row);
+    row[1]
 }
 
 fn entry(system: &System, i: usize, j: usize) -> f64 {
