@@ -305,7 +305,9 @@ impl Parts<'_> {
             } else {
                 (&mut row.lost, self.n_sources)
             };
-            if value > 0.0 {
+            // Nothing is lost to a sink that may be hidden as well: closed scenes stay closed.
+            let is_certain = j < self.n_sources || value * value > variance;
+            if value > 0.0 && is_certain {
                 list.push(Entry { column: (j - first) as u32, value, variance });
             }
         });

@@ -8,11 +8,11 @@
 //! B by those leaves a convex polygon with Lambert's exact form factor. Several bodies hide the union of what each of them does:
 //! the sum, less what is hidden twice, and so on.
 //!
-//! On a part of A that lies on one side of every face the silhouette does not change. There every plane's height over a corner of B
-//! is linear in x, so whether an edge takes part at all is settled by corners alone, and the integrand bends on straight
-//! lines only: where an edge passes a corner of B or of another edge's obstacle, or a corner of an obstacle an edge of B. The part is cut along them; in each cell the integrand is
-//! analytic and Gauss rules converge geometrically. The one exception, three edges of different bodies in one line of sight, is left
-//! to refinement.
+//! On a part of A that lies on one side of every face the silhouette does not change. There every plane's height over a corner of B is
+//! linear in x, so whether an edge takes part at all is settled by corners alone, and the integrand bends on straight lines only:
+//! where an edge passes a corner of B or of another body, or a corner of a body a side of B. The part is cut along them; in each
+//! cell the integrand is analytic and Gauss rules converge geometrically. The one exception, three edges of different outlines in one
+//! line of sight, is left to refinement.
 //!
 //! The unoccluded exchange is not integrated here, so its singularities at touching edges do not matter.
 
@@ -22,14 +22,16 @@ mod cells;
 mod cubature;
 mod events;
 mod flux;
+mod nature;
 
 pub use bodies::Bodies;
 
 use crate::geometry::{Polygon, Vec3};
 use body::{Body, Lie, Plane};
 use cells::{Line, Pieces};
-use cubature::{Cell, Nature};
+use cubature::Cell;
 use flux::{Edge, Scratch};
+use nature::{distance_squared, nature};
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -390,38 +392,4 @@ fn front(polygon: &[Vec3], plane: &Plane, part: &mut Vec<Vec3>) -> bool {
         }
     }
     part.len() >= 3
-}
-
-/// What the integrand of a term is like on a cell with these corners.
-fn nature(corners: &[Vec3; 4], target: &[Vec3], edges: &[Edge], is_cut: bool) -> Nature {
-    let centre = corners.iter().copied().sum::<Vec3>() / corners.len() as f64;
-    if !is_cut {
-        return Nature::Kinked;
-    }
-    if edges.len() > 1 && events::is_kinked(*corners, target, edges) {
-        return Nature::Kinked;
-    }
-    let radius = corners.iter().map(|v| v.distance_squared(centre)).fold(0.0, f64::max).sqrt();
-    Nature::Smooth { reach: clearance(centre, target, edges) / radius }
-}
-
-/// Distance of a point from whatever makes F(x → target ∩ hidden sides) singular: the edges' lines and the sides of the target.
-fn clearance(x: Vec3, target: &[Vec3], edges: &[Edge]) -> f64 {
-    let mut from = target[target.len() - 1];
-    let mut nearest = f64::INFINITY;
-    for &to in target {
-        nearest = nearest.min(distance_squared(x, from, to));
-        from = to;
-    }
-    for edge in edges {
-        nearest = nearest.min(edge.plane_from(x).length_squared() / (edge.to - edge.from).length_squared());
-    }
-    nearest.sqrt()
-}
-
-/// Squared distance of a point from a segment.
-fn distance_squared(point: Vec3, from: Vec3, to: Vec3) -> f64 {
-    let (side, offset) = (to - from, point - from);
-    let along = (offset.dot(side) / side.length_squared()).clamp(0.0, 1.0);
-    (offset - along * side).length_squared()
 }
