@@ -71,7 +71,7 @@ pub struct SceneArguments {
     pub patch_size: Option<f64>,
 
     /// Integrate partly visible pairs to this error of their exchange, as a share of the smaller étendue
-    #[arg(long, value_name = "ERROR", default_value = "1e-6", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "ERROR", default_value = "1e-7", value_parser = positive, allow_negative_numbers = true)]
     #[arg(conflicts_with = "visibility_rays")]
     pub visibility_error: f64,
 

@@ -1,7 +1,7 @@
 //! Exchange: the étendue that flows between every two bundles, T = Tᵀ, and what flows into sinks.
 //!
 //! Every pair of patches is looked at once and deposited both ways. What a patch loses to the environment and to black backs is
-//! counted by rays of its own, so that closure, Σⱼ Tᵢⱼ + sinksᵢ = μᵢ, is a check and not a definition.
+//! computed on its own, so that closure, Σⱼ Tᵢⱼ + sinksᵢ = μᵢ, is a check and not a definition.
 
 mod angle;
 mod apart;
