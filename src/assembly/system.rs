@@ -210,20 +210,14 @@ impl System {
         let exchange = Arc::new(exchange);
         // G of scaled rows is M⁻¹ D T: the T that is still symmetric over its own row sums.
         let propagation = match method {
-            RepairMethod::Rows => Propagation::new(raw.exchange.clone(), raw.row_totals().into()),
+            RepairMethod::Rows => {
+                Propagation::new(raw.exchange.clone(), exchange::row_totals(&raw.exchange, &raw.sinks).into())
+            }
             _ => Propagation::new(exchange.clone(), self.etendue.clone()),
         };
         let transport = Transport::new(self.transport.scattering().clone(), propagation);
         let is_self_adjoint = method != RepairMethod::Rows;
         (Self { exchange, sinks, transport, is_self_adjoint, ..raw }, sweeps)
-    }
-
-    /// Σⱼ Tᵢⱼ + sinksᵢ, m² sr.
-    fn row_totals(&self) -> Vec<f64> {
-        let n = self.n_bundles();
-        let mut flow = Block::zeros(n, 1);
-        self.exchange.apply(&Block::from_fn(n, 1, |_, _| 1.0), &mut flow);
-        (0..n).map(|i| flow.get(i, 0) + self.sinks.row(i).sum::<f64>()).collect()
     }
 
     /// The four laws, as they hold in the matrices. Cost O(entries).

@@ -4,10 +4,13 @@ use crate::linalg::{Block, LinearOperator, Matrix, worst};
 
 /// max |Σⱼ Tᵢⱼ + sinksᵢ − μᵢ| / μᵢ. One product with T.
 pub fn violation(exchange: &Matrix, sinks: &Block, etendue: &[f64]) -> f64 {
-    let n = etendue.len();
+    worst(row_totals(exchange, sinks).iter().zip(etendue).map(|(total, mu)| (total / mu - 1.0).abs()))
+}
+
+/// Σⱼ Tᵢⱼ + sinksᵢ, m² sr. One product with T.
+pub fn row_totals(exchange: &Matrix, sinks: &Block) -> Vec<f64> {
     let flow = row_sums(exchange);
-    let row = |i: usize| flow.get(i, 0) + sinks.row(i).sum::<f64>();
-    worst((0..n).map(|i| (row(i) / etendue[i] - 1.0).abs()))
+    (0..flow.n_rows()).map(|i| flow.get(i, 0) + sinks.row(i).sum::<f64>()).collect()
 }
 
 /// The bundle that exchanges most with others over its étendue, if that is more than sampling can explain: a quarter and ten

@@ -29,6 +29,7 @@ mod single;
 mod sinks;
 mod visibility;
 
+pub(super) use closure::row_totals;
 pub use disk::point_to_disk;
 pub use enclosure::{Enclosure, enclose};
 pub(super) use folded::compute as folded;

@@ -3,7 +3,7 @@
 //! The default is symmetric scaling, T ← D T D with D diagonal: it keeps T symmetric and non-negative. The others are what is found
 //! elsewhere, kept to be compared with it; each says which law it breaks.
 
-use super::closure::row_sums;
+use super::closure::{row_sums, row_totals};
 use crate::linalg::{Block, LinearOperator, Matrix, worst};
 
 /// Rows closer to μ than this need no further sweep: eight ulp, what summing a row leaves.
@@ -111,12 +111,8 @@ pub fn repair(exchange: &mut Matrix, sinks: &mut Block, etendue: &[f64]) -> (Rep
 
 /// dᵢ = μᵢ / rowᵢ, 1 for empty rows.
 fn row_scale(exchange: &Matrix, sinks: &Block, etendue: &[f64]) -> Vec<f64> {
-    let flow = row_sums(exchange);
-    let scale = |(i, mu): (usize, &f64)| {
-        let sum = flow.get(i, 0) + sinks.row(i).sum::<f64>();
-        if sum > 0.0 { mu / sum } else { 1.0 }
-    };
-    etendue.iter().enumerate().map(scale).collect()
+    let totals = row_totals(exchange, sinks);
+    totals.iter().zip(etendue).map(|(total, mu)| if *total > 0.0 { mu / total } else { 1.0 }).collect()
 }
 
 fn alternate(exchange: &mut Matrix, sinks: &mut Block, etendue: &[f64]) -> usize {
@@ -138,8 +134,8 @@ fn least_squares(exchange: &mut Matrix, sinks: &mut Block, etendue: &[f64]) -> u
     weight.map_entries(|_, _, t| t * t);
     let of_row = row_sums(&weight);
     let diagonal: Vec<f64> = (0..n).map(|i| of_row.get(i, 0) + sinks.row(i).map(|s| s * s).sum::<f64>()).collect();
-    let flow = row_sums(exchange);
-    let mut residual: Vec<f64> = (0..n).map(|i| etendue[i] - flow.get(i, 0) - sinks.row(i).sum::<f64>()).collect();
+    let totals = row_totals(exchange, sinks);
+    let mut residual: Vec<f64> = etendue.iter().zip(&totals).map(|(mu, total)| mu - total).collect();
 
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let precondition =

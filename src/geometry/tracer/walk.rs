@@ -49,13 +49,6 @@ impl Closest<'_> {
     fn walk(&self, simd: impl Eight, tree: &Tree, waiting: &mut [u64]) -> Option<Hit> {
         let mut so_far =
             SoFar { lanes: LaneRay::new(simd, &self.local), t_max: round_up(self.local.t_max), best: None };
-        if tree.nodes.is_empty() {
-            for block in &tree.blocks {
-                self.visit(simd, block, &mut so_far);
-            }
-            return so_far.best;
-        }
-
         let boxes = BoxRay::new(simd, self.local.origin, self.local.direction);
         let mut n_waiting = 1;
         waiting[0] = 0;
