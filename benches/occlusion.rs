@@ -19,7 +19,7 @@ const WHOLE: f64 = 10.0;
 
 fn run(scene: &Scene, patch_size: f64, occlusion: Occlusion) -> (usize, f64, f64) {
     let bundles = Bundles::new(scene, Resolution { patch_size, n_directions: 1 }).expect("a resolution");
-    let settings = Exchange { occlusion, sink_rays: 1, repair: false, ..Exchange::default() };
+    let settings = Exchange { occlusion, repair: false, ..Exchange::default() };
     // The shortest of three: what interrupts a run only makes it longer.
     let mut seconds = f64::INFINITY;
     let mut closure = 0.0;
@@ -51,7 +51,7 @@ fn main() {
     }
     for (name, patch_size) in [("corner-box", 0.25), ("two-rooms", 0.5), ("cornell-box", 0.25)] {
         let scene = (gallery::find(name).expect("a scene of the gallery").build)();
-        let (n, sampled, noisy) = run(&scene, patch_size, Occlusion::Sampled);
+        let (n, sampled, noisy) = run(&scene, patch_size, Occlusion::by_rays(64));
         for tolerance in [1e-6, 1e-8] {
             let (_, exact, closure) = run(&scene, patch_size, Occlusion::Exact { tolerance });
             println!(

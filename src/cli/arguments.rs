@@ -93,7 +93,7 @@ impl SceneArguments {
     pub fn exchange(&self) -> Exchange {
         let settings = Exchange { seed: self.seed, ..Exchange::default() };
         match self.visibility_rays {
-            Some(visibility_rays) => Exchange { occlusion: Occlusion::Sampled, visibility_rays, ..settings },
+            Some(rays) => Exchange { occlusion: Occlusion::by_rays(rays), ..settings },
             None => Exchange { occlusion: Occlusion::Exact { tolerance: self.visibility_error }, ..settings },
         }
     }

@@ -17,10 +17,9 @@ pub fn provenance<const N: usize>(
     ];
     let occlusion = match exchange.occlusion {
         Occlusion::Exact { tolerance } => vec![("visibility_error", format!("{tolerance:e}"))],
-        Occlusion::Sampled => vec![
-            ("visibility_rays_a_pair", exchange.visibility_rays.to_string()),
-            ("sink_rays_a_patch", exchange.sink_rays.to_string()),
-        ],
+        Occlusion::Sampled { rays, sink_rays } => {
+            vec![("visibility_rays_a_pair", rays.to_string()), ("sink_rays_a_patch", sink_rays.to_string())]
+        }
     };
     let settings = settings.into_iter().chain(shared).chain(occlusion);
     Provenance {

@@ -4,7 +4,7 @@
 //! N used below that is a factor of exp(γ / 7) for walks and exp(γ / 3) for paths, with γ of about 5 where emitters are hit most
 //! rarely.
 
-use etendue::assembly::{Exchange, System, assemble};
+use etendue::assembly::{Exchange, Occlusion, System, assemble};
 use etendue::basis::{Bundles, Resolution};
 use etendue::compare::{ZVerdict, compare_blocks, relative_max};
 use etendue::estimator::{
@@ -302,7 +302,7 @@ fn a_walk_that_would_never_end_is_refused() {
 #[test]
 fn rows_above_one_are_refused() {
     let scene = open_room();
-    let rough = Exchange { tolerance: 1e-2, visibility_rays: 4, repair: false, ..Exchange::default() };
+    let rough = Exchange { tolerance: 1e-2, occlusion: Occlusion::by_rays(4), repair: false, ..Exchange::default() };
     let system = assemble(&scene, &bundles(&scene, 0.5), rough).unwrap();
     assert!(system.laws().closure > 1e-3, "the premise: closure must be broken");
     assert!(matches!(MatrixWalk::collision(&system), Err(EstimatorError::Propagation(_))));

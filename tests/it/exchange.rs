@@ -2,7 +2,7 @@
 
 use super::form_factors::{CLEAR, OCCLUDED, Pair};
 use super::scenes::{Case, polygon, scene_of};
-use etendue::assembly::{Exchange, System, assemble};
+use etendue::assembly::{Exchange, Occlusion, System, assemble};
 use etendue::basis::{Bundles, Resolution};
 use etendue::geometry::{Mat3, Polygon, Vec3};
 use etendue::linalg::LinearOperator;
@@ -23,8 +23,12 @@ const STANDARD_ERRORS: f64 = 4.5;
 fn assembled(polygons: &[Polygon], are_two_sided: bool, visibility_rays: usize) -> System {
     let scene = scene_of(polygons, are_two_sided);
     let bundles = Bundles::new(&scene, Resolution { patch_size: 1e12, n_directions: 1 }).unwrap();
-    let settings =
-        Exchange { tolerance: TOLERANCE, visibility_rays, sink_rays: 1, repair: false, ..Exchange::default() };
+    let settings = Exchange {
+        tolerance: TOLERANCE,
+        occlusion: Occlusion::Sampled { rays: visibility_rays, sink_rays: 1 },
+        repair: false,
+        ..Exchange::default()
+    };
     assemble(&scene, &bundles, settings).unwrap()
 }
 

@@ -1,7 +1,7 @@
 //! The four laws × every scene of the gallery, measured on the matrices from outside.
 
 use super::scenes::{Case, coarse};
-use etendue::assembly::Exchange;
+use etendue::assembly::{Exchange, Occlusion};
 use etendue::linalg::{Block, LinearOperator};
 use etendue::scene::Side;
 use std::f64::consts::PI;
@@ -145,7 +145,8 @@ fn transport_is_one_matrix_whichever_way_it_is_read() {
 #[test]
 fn undoing_the_repair_gives_the_unrepaired_system() {
     let repaired = super::scenes::find("cornell-box");
-    let settings = Exchange { visibility_rays: 24, sink_rays: 256, repair: false, ..Exchange::default() };
+    let settings =
+        Exchange { occlusion: Occlusion::Sampled { rays: 24, sink_rays: 256 }, repair: false, ..Exchange::default() };
     let raw = Case::with("cornell-box", repaired.bundles.resolution().patch_size, settings);
     let undone = repaired.system.without_repair();
 

@@ -26,7 +26,6 @@ fn settings() -> Exchange {
     Exchange {
         tolerance: 1e-13,
         occlusion: Occlusion::Exact { tolerance: 1e-11 },
-        sink_rays: 1,
         repair: false,
         ..Exchange::default()
     }

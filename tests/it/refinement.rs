@@ -1,7 +1,7 @@
 //! Under refinement: the discrete truth is exact where it can be, and approaches the continuous one at its order.
 
 use super::scenes::Case;
-use etendue::assembly::Exchange;
+use etendue::assembly::{Exchange, Occlusion};
 use etendue::compare::observed_order;
 use etendue::gallery::{self, Continuous, Exact, MeanRadiance, PointRadiance};
 use etendue::geometry::Vec3;
@@ -14,7 +14,12 @@ const DISCRETE: f64 = 1e-11;
 
 /// Exchange alone, its closure unrepaired: nothing sampled enters T of scenes without occluders.
 fn unrepaired() -> Exchange {
-    Exchange { tolerance: 1e-12, visibility_rays: 1, sink_rays: 1, repair: false, ..Exchange::default() }
+    Exchange {
+        tolerance: 1e-12,
+        occlusion: Occlusion::Sampled { rays: 1, sink_rays: 1 },
+        repair: false,
+        ..Exchange::default()
+    }
 }
 
 fn solved(case: &Case) -> Block {

@@ -1,6 +1,6 @@
 //! Small scenes and their systems, shared by the tests of matrices and solvers.
 
-use etendue::assembly::{Exchange, System, assemble};
+use etendue::assembly::{Exchange, Occlusion, System, assemble};
 use etendue::basis::{Bundles, Resolution};
 use etendue::gallery::{self, Entry};
 use etendue::geometry::{Polygon, Vec3};
@@ -20,7 +20,7 @@ pub struct Case {
 impl Case {
     /// The case with its sampling left coarse: what is tested on it must hold at any number of rays.
     pub fn new(name: &str, patch_size: f64) -> Self {
-        let settings = Exchange { visibility_rays: 24, sink_rays: 256, ..Exchange::default() };
+        let settings = Exchange { occlusion: Occlusion::Sampled { rays: 24, sink_rays: 256 }, ..Exchange::default() };
         Self::with(name, patch_size, settings)
     }
 

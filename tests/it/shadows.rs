@@ -21,7 +21,7 @@ const WHOLE: f64 = 1e12;
 fn exchange(scene: &Scene, patch_size: f64, tolerance: f64) -> System {
     let bundles = Bundles::new(scene, Resolution { patch_size, n_directions: 1 }).unwrap();
     let occlusion = Occlusion::Exact { tolerance };
-    let settings = Exchange { occlusion, sink_rays: 1, repair: false, ..Exchange::default() };
+    let settings = Exchange { occlusion, repair: false, ..Exchange::default() };
     assemble(scene, &bundles, settings).unwrap()
 }
 

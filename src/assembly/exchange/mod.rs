@@ -3,54 +3,32 @@
 //! Every pair of patches is looked at once and deposited both ways. What a patch loses to the environment and to black backs is
 //! computed on its own, so that closure, Σⱼ Tᵢⱼ + sinksᵢ = μᵢ, is a check and not a definition.
 
-mod angle;
-mod apart;
-mod clip;
-mod close;
 mod closure;
-mod cluster;
-mod contour;
-mod disk;
-mod double;
 mod enclosure;
+mod flow;
 mod folded;
-mod ladder;
-mod lambert;
-mod openings;
-mod point;
-mod product;
-mod quadrature;
-mod real;
+mod pair;
 mod repair;
-mod rules;
-mod shadow;
-mod shape;
-mod single;
 mod sinks;
 mod visibility;
 
 pub(super) use closure::row_totals;
-pub use disk::point_to_disk;
 pub use enclosure::{Enclosure, enclose};
 pub(super) use folded::compute as folded;
-pub use ladder::{Ladder, Nodes};
-pub use point::{point_factor, point_factors};
-pub use quadrature::unoccluded;
+pub use pair::{Ladder, Nodes, exchange_of_pair, point_factor, point_factors, point_to_disk, unoccluded};
 pub(super) use repair::repair_by;
 pub use repair::{Repair, RepairMethod};
-pub use single::exchange_of_pair;
 
 use crate::basis::Bundles;
 use crate::geometry::{Polygon, Tracer};
 use crate::linalg::{Block, Matrix};
 use crate::sampling::mix;
 use crate::scene::Scene;
-use cluster::{Clusters, View};
+use flow::{Means, Tally};
 use rayon::prelude::*;
-use shadow::Desk;
 use sinks::{Lost, Sink};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use visibility::{End, Obstacles, Visibility};
+use visibility::{Clusters, Desk, End, Obstacles};
 
 /// How exchange is computed: accuracy is the caller's choice, and every number here enters the provenance of the result.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,10 +37,6 @@ pub struct Exchange {
     pub tolerance: f64,
     /// How partly visible pairs are computed.
     pub occlusion: Occlusion,
-    /// Rays a pair whose visibility geometry does not settle.
-    pub visibility_rays: usize,
-    /// Rays a patch that count what it loses to sinks.
-    pub sink_rays: usize,
     /// Key of the random shifts.
     pub seed: u64,
     /// Whether closure is repaired by symmetric scaling.
@@ -71,14 +45,7 @@ pub struct Exchange {
 
 impl Default for Exchange {
     fn default() -> Self {
-        Self {
-            tolerance: 1e-10,
-            occlusion: Occlusion::Sampled,
-            visibility_rays: 64,
-            sink_rays: 4096,
-            seed: 0x00e7_e2d0_e000_0001,
-            repair: true,
-        }
+        Self { tolerance: 1e-10, occlusion: Occlusion::by_rays(64), seed: 0x00e7_e2d0_e000_0001, repair: true }
     }
 }
 
@@ -86,9 +53,21 @@ impl Default for Exchange {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Occlusion {
     /// By rays: fast, with a standard error.
-    Sampled,
+    Sampled {
+        /// Rays a pair whose visibility geometry does not settle.
+        rays: usize,
+        /// Rays a patch that count what it loses to sinks.
+        sink_rays: usize,
+    },
     /// By the exact visible part from every point of an adaptive quadrature, to this absolute error of Tᵢⱼ / min(μᵢ, μⱼ).
     Exact { tolerance: f64 },
+}
+
+impl Occlusion {
+    /// By so many rays a pair, and 4096 a patch for what it loses to sinks.
+    pub fn by_rays(rays: usize) -> Self {
+        Self::Sampled { rays, sink_rays: 4096 }
+    }
 }
 
 /// How the entries of T came about.
@@ -145,17 +124,6 @@ struct Entry {
     variance: f64,
 }
 
-#[derive(Clone, Copy, Default)]
-struct Tally {
-    n_pairs: usize,
-    /// Of these: not settled by clusters.
-    n_open: usize,
-    n_clear: usize,
-    n_hidden: usize,
-    n_integrated: usize,
-    quadrature_error: f64,
-}
-
 /// T and sinks of all patches. Cost O(n²) pairs; `progress` hears the finished share, from any thread.
 pub(super) fn compute(
     scene: &Scene,
@@ -166,7 +134,7 @@ pub(super) fn compute(
     // Name everything that light can end on: patches, and of sinks those that are computed like patches.
     let facets: Vec<&Polygon> = (0..scene.facets().len()).map(|facet| scene.polygon(facet)).collect();
     let sinks = match settings.occlusion {
-        Occlusion::Sampled => Vec::new(),
+        Occlusion::Sampled { .. } => Vec::new(),
         Occlusion::Exact { .. } => sinks::of_scene(scene, &facets),
     };
     let planes: Vec<&Polygon> = facets.iter().copied().chain(sinks.iter().filter_map(Sink::opening)).collect();
@@ -181,14 +149,14 @@ pub(super) fn compute(
     let clusters = Clusters::new(&ends, n, &planes, &obstacles.tracer);
 
     // Visit the upper triangle row by row; long rows first, so that threads finish together.
-    let parts =
-        Parts { ends: &ends, n_sources: n, ladder: &ladder, nodes: &nodes, clusters: &clusters, obstacles: &obstacles };
+    let means = Means { ladder: &ladder, obstacles: &obstacles, settings, n_sharing: None };
+    let parts = Parts { ends: &ends, n_sources: n, nodes: &nodes, clusters: &clusters, means: &means };
     let done = AtomicUsize::new(0);
     let rows: Vec<Row> = (0..n)
         .into_par_iter()
         .with_max_len(1)
         .map_init(Desk::default, |desk, i| {
-            let row = parts.upper_row(desk, i, settings);
+            let row = parts.upper_row(desk, i);
             let finished = done.fetch_add(n - i, Ordering::Relaxed) + (n - i);
             progress(0.95 * finished as f64 / (0.5 * (n * (n + 1)) as f64));
             row
@@ -200,11 +168,10 @@ pub(super) fn compute(
         Occlusion::Exact { .. } => {
             rows.par_iter().enumerate().map(|(i, row)| sinks::lost_to(&sinks, &facets, ends[i], &row.lost)).collect()
         }
-        Occlusion::Sampled => {
+        Occlusion::Sampled { sink_rays, .. } => {
             let everything = Tracer::new(&facets);
-            let rays = |i| {
-                sinks::lost_by_rays(scene, &everything, ends[i], settings.sink_rays, mix(&[settings.seed, 1, i as u64]))
-            };
+            let key = |i| mix(&[settings.seed, 1, i as u64]);
+            let rays = |i| sinks::lost_by_rays(scene, &everything, ends[i], sink_rays, key(i));
             (0..n).into_par_iter().map(rays).collect()
         }
     };
@@ -225,12 +192,8 @@ pub(super) fn compute(
         n_by_clusters: census.n_averted + census.n_hidden + census.n_clear,
         n_shafts: census.n_shafts + total.n_open,
         n_pairs: total.n_pairs + census.n_hidden,
-        n_clear: total.n_clear,
         n_hidden: total.n_hidden + census.n_hidden,
-        n_integrated: total.n_integrated,
-        n_sampled: total.n_pairs - total.n_clear - total.n_hidden - total.n_integrated,
-        quadrature_error: total.quadrature_error,
-        ..ExchangeReport::default()
+        ..total.report()
     };
     let relative: f64 = variance.iter().zip(etendue).map(|(v, mu)| v / (mu * mu)).sum();
     report.visibility_error = (relative / n.max(1) as f64).sqrt();
@@ -270,38 +233,21 @@ struct Parts<'a> {
     /// Patches, then sinks.
     ends: &'a [End<'a>],
     n_sources: usize,
-    ladder: &'a Ladder,
     nodes: &'a [Nodes],
     clusters: &'a Clusters,
-    obstacles: &'a Obstacles,
+    means: &'a Means<'a>,
 }
 
 impl Parts<'_> {
     /// The pairs (i, j), j > i, that exchange anything.
-    fn upper_row(&self, desk: &mut Desk, i: usize, settings: Exchange) -> Row {
+    fn upper_row(&self, desk: &mut Desk, i: usize) -> Row {
         let mut row = Row { entries: Vec::new(), lost: Vec::new(), tally: Tally::default() };
         self.clusters.for_each_partner(i, |j, view| {
-            let [a, b] = [i, j].map(|k| (self.ends[k].polygon, &self.nodes[k]));
-            let Some((exchange, error)) = unoccluded(self.ladder, a, b, settings.tolerance) else { return };
-            let n_open = usize::from(matches!(view, View::Open(_)));
-            let mut tally = Tally { n_pairs: 1, n_open, quadrature_error: error / exchange, ..Tally::default() };
-            let (value, variance) = match self.visible(desk, [i, j], view, settings) {
-                Visibility::Full => {
-                    tally.n_clear = 1;
-                    (exchange, 0.0)
-                }
-                Visibility::None => {
-                    tally.n_hidden = 1;
-                    (0.0, 0.0)
-                }
-                Visibility::Integrated { blocked, error } => {
-                    tally.n_integrated = 1;
-                    ((exchange - blocked).max(0.0), error * error)
-                }
-                Visibility::Sampled { share, variance } => (share * exchange, variance * exchange * exchange),
-            };
+            let pair = [i, j].map(|k| (k, self.ends[k], &self.nodes[k]));
+            let Some(flow) = self.means.flow(desk, pair, Some(view)) else { return };
+            let (value, variance) = (flow.value, flow.error().powi(2));
             let (list, first) = if j < self.n_sources {
-                row.tally.add(tally);
+                row.tally.add(flow.tally);
                 (&mut row.entries, 0)
             } else {
                 (&mut row.lost, self.n_sources)
@@ -315,24 +261,5 @@ impl Parts<'_> {
         row.entries.sort_unstable_by_key(|entry| entry.column);
         row.lost.sort_unstable_by_key(|entry| entry.column);
         row
-    }
-
-    fn visible(&self, desk: &mut Desk, [i, j]: [usize; 2], view: &View, settings: Exchange) -> Visibility {
-        let View::Open(candidates) = view else { return Visibility::Full };
-        let key = mix(&[settings.seed, 0, i as u64, j as u64]);
-        let ends = [self.ends[i], self.ends[j]];
-        let (candidates, n_rays) = (Some(&candidates[..]), settings.visibility_rays);
-        visibility::between(self.obstacles, desk, candidates, ends, settings.occlusion, n_rays, key)
-    }
-}
-
-impl Tally {
-    fn add(&mut self, other: Self) {
-        self.n_pairs += other.n_pairs;
-        self.n_open += other.n_open;
-        self.n_clear += other.n_clear;
-        self.n_hidden += other.n_hidden;
-        self.n_integrated += other.n_integrated;
-        self.quadrature_error = self.quadrature_error.max(other.quadrature_error);
     }
 }

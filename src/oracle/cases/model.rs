@@ -84,7 +84,6 @@ fn settings(walls: Walls, occluded: f64) -> Exchange {
         tolerance: 1e-14,
         occlusion: Occlusion::Exact { tolerance: occluded },
         // What escapes is not asked for: one ray a patch is the least there can be.
-        sink_rays: 1,
         repair: walls == Walls::Closed,
         ..Exchange::default()
     }

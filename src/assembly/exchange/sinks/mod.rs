@@ -2,12 +2,14 @@
 //!
 //! Either as exchange with openings and backs, like that of any two patches; or counted by rays.
 
+mod openings;
+
 use super::Entry;
-use super::openings::openings;
 use super::visibility::End;
 use crate::geometry::{Frame, Polygon, Ray, Tracer, Vec3, height};
 use crate::sampling::{Kronecker, mix};
 use crate::scene::{Scene, Side};
+use openings::openings;
 use std::f64::consts::TAU;
 
 /// Étendue of a patch, m² sr.

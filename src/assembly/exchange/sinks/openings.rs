@@ -3,7 +3,7 @@
 //! Between two points of the scene a ray stays inside the hull, so what leaves a patch for good passes an opening, and what passes an
 //! opening never comes back: étendue that escapes is exchange with the openings, and is computed like any other.
 
-use super::clip::{Half, above};
+use crate::assembly::exchange::pair::{Half, above};
 use crate::geometry::{Polygon, Vec3, convex_hull, convex_hull_in_plane, group_by_plane, height};
 
 /// Openings smaller than this share of the hull are seams between surfaces that meet within the rounding of their corners.

@@ -1,6 +1,6 @@
 //! Integration over quadrilaterals of a plane, the worst refined first, until the sum is good enough.
 
-use super::super::rules::{Rule, gauss_legendre};
+use crate::assembly::exchange::pair::{Rule, gauss_legendre};
 use crate::geometry::Vec3;
 use std::sync::LazyLock;
 

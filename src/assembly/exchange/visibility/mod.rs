@@ -1,9 +1,15 @@
 //! How much of the exchange of two patches gets through what stands between them.
 
+mod cluster;
+mod shadow;
+
+pub use cluster::{Clusters, View};
+pub use shadow::Desk;
+
 use super::Occlusion;
-use super::shadow::{Bodies, Desk, Shadow};
 use crate::geometry::{Polygon, Shaft, Tracer, Vec3};
 use crate::sampling::{Kronecker, mix};
+use shadow::{Bodies, Shadow};
 use std::f64::consts::PI;
 
 /// The visible share of a pair's exchange.
@@ -50,8 +56,8 @@ impl Obstacles {
     }
 }
 
-/// Classifies the pair among these candidates, `None` standing for all, and where that does not settle it integrates what is blocked, or casts `n_rays` between points spread
-/// evenly over both.
+/// Classifies the pair among these candidates, `None` standing for all, and where that does not settle it integrates what is blocked, or casts
+/// rays between points spread evenly over both.
 ///
 /// The share is Σ k V / Σ k, k the kernel cosθ cosθ'/r² of each ray and V whether it gets through. Its variance is that of the
 /// weighted mean with half a ray added to each outcome, so that no finite number of rays claims certainty.
@@ -63,7 +69,6 @@ pub fn between(
     candidates: Option<&[u32]>,
     [a, b]: [End; 2],
     occlusion: Occlusion,
-    n_rays: usize,
     key: u64,
 ) -> Visibility {
     let occluders = &obstacles.tracer;
@@ -77,14 +82,20 @@ pub fn between(
         Shaft::Blocked => return Visibility::None,
         Shaft::Undecided(handles) => handles,
     };
-    if let Occlusion::Exact { tolerance } = occlusion {
-        let tolerance = tolerance * a.etendue.min(b.etendue);
-        return match desk.shadow(&obstacles.bodies, a.polygon, b.polygon, &handles, tolerance) {
-            Shadow::Clear => Visibility::Full,
-            Shadow::Total => Visibility::None,
-            Shadow::Partial { blocked, error } => Visibility::Integrated { blocked, error },
-        };
+    match occlusion {
+        Occlusion::Exact { tolerance } => {
+            let tolerance = tolerance * a.etendue.min(b.etendue);
+            match desk.shadow(&obstacles.bodies, a.polygon, b.polygon, &handles, tolerance) {
+                Shadow::Clear => Visibility::Full,
+                Shadow::Total => Visibility::None,
+                Shadow::Partial { blocked, error } => Visibility::Integrated { blocked, error },
+            }
+        }
+        Occlusion::Sampled { rays, .. } => sampled(occluders, &handles, [a, b], rays, key),
     }
+}
+
+fn sampled(occluders: &Tracer, handles: &[u32], [a, b]: [End; 2], n_rays: usize, key: u64) -> Visibility {
     let points = Kronecker::<4>::new(mix(&[key]));
     let (mut through, mut total, mut squares) = (0.0, 0.0, 0.0);
     for k in 0..n_rays {
@@ -98,7 +109,7 @@ pub fn between(
         squares += kernel * kernel;
         // With many candidates the tree is faster than the list.
         let blocked = if handles.len() <= 12 {
-            occluders.blocked_by(&handles, x, y)
+            occluders.blocked_by(handles, x, y)
         } else {
             occluders.occluded(x, y, [a.facet, b.facet])
         };

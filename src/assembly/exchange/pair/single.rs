@@ -1,7 +1,6 @@
 //! The exchange of one pair of polygons with nothing between them, outside any scene.
 
-use super::Ladder;
-use super::quadrature::unoccluded;
+use super::{Ladder, unoccluded};
 use crate::geometry::Polygon;
 use std::sync::LazyLock;
 
@@ -9,7 +8,7 @@ static LADDER: LazyLock<Ladder> = LazyLock::new(Ladder::new);
 
 /// T = ∫∫ cosθ cosθ′ / r² dA dA′ of the parts of two polygons in front of each other's plane and an estimate of its error, both
 /// m² sr; `None` where they do not face each other. What [`assemble`](crate::assembly::assemble) deposits where nothing stands
-/// between; [`enclose`](super::enclose) proves it.
+/// between; [`enclose`](crate::assembly::enclose) proves it.
 ///
 /// `tolerance` is relative. Cost: some µs to some 100 µs; a scene's pairs share what this lays out anew for each.
 pub fn exchange_of_pair(a: &Polygon, b: &Polygon, tolerance: f64) -> Option<(f64, f64)> {

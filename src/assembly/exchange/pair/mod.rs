@@ -1,14 +1,36 @@
 //! Exchange of two unoccluded polygons: product Gauss where they are apart, contours where they are not, and contours in
 //! double-double arithmetic where too much cancels in those.
 
-use super::apart::Apart;
-use super::clip::cut;
-use super::close::Close;
-use super::double::Double;
-use super::ladder::{Ladder, Nodes};
-use super::real::Vector;
-use super::shape::{Shape, point};
+mod angle;
+mod apart;
+mod clip;
+mod close;
+mod contour;
+mod disk;
+mod double;
+mod ladder;
+mod lambert;
+mod point;
+mod product;
+mod real;
+mod rules;
+mod shape;
+mod single;
+
+pub use clip::{Half, above, in_front_of};
+pub use disk::point_to_disk;
+pub use ladder::{Ladder, Nodes};
+pub use point::{point_factor, point_factors};
+pub use rules::{Rule, gauss_legendre};
+pub use single::exchange_of_pair;
+
 use crate::geometry::{Polygon, Vec3, height};
+use apart::Apart;
+use clip::cut;
+use close::Close;
+use double::Double;
+use real::Vector;
+use shape::{Shape, point};
 
 /// The longest product rule that is tried before contours: as dear as they are.
 const CHEAP: usize = 8;
@@ -50,7 +72,7 @@ pub fn unoccluded(ladder: &Ladder, a: (&Polygon, &Nodes), b: (&Polygon, &Nodes),
     let part_a = side_a.part(&corners_a, &corners_b)?;
     let part_b = side_b.part(&corners_b, &corners_a)?;
     let nodes = [ladder.bare(&part_a), ladder.bare(&part_b)];
-    let highest = [above(&part_a, &nodes[1].shape, part_b[0]), above(&part_b, &nodes[0].shape, part_a[0])];
+    let highest = [top_of(&part_a, &nodes[1].shape, part_b[0]), top_of(&part_b, &nodes[0].shape, part_a[0])];
     if highest.iter().any(|height| *height <= 0.0) {
         return None;
     }
@@ -119,6 +141,6 @@ impl Side {
 }
 
 /// The greatest height above the plane of a shape, one point of which is given.
-fn above(part: &[Vector<Double>], plane: &Shape, on_plane: Vector<Double>) -> f64 {
+fn top_of(part: &[Vector<Double>], plane: &Shape, on_plane: Vector<Double>) -> f64 {
     part.iter().map(|v| plane.normal.dot(point(*v - on_plane))).fold(0.0, f64::max)
 }

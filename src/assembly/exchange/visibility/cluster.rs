@@ -8,8 +8,8 @@
 //! Source: Hanrahan, Salzman and Aupperle (1991), "A rapid hierarchical radiosity algorithm" (links between clusters); Haines and
 //! Wallace (1991), "Shaft culling" (inherited candidates).
 
-use super::clip::{Half, in_front_of};
-use super::visibility::End;
+use super::End;
+use crate::assembly::exchange::pair::{Half, in_front_of};
 use crate::geometry::{Polygon, Shaft, Tracer, Vec3, convex_hull_in_plane};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -52,6 +52,16 @@ pub enum View {
     Clear { is_facing: bool },
     /// Perhaps these occluders.
     Open(Box<[u32]>),
+}
+
+impl View {
+    /// What may stand between; `None` where nothing does.
+    pub fn candidates(&self) -> Option<&[u32]> {
+        match self {
+            Self::Clear { .. } => None,
+            Self::Open(candidates) => Some(candidates),
+        }
+    }
 }
 
 /// How many pairs of sources clusters settled.
