@@ -10,7 +10,7 @@ use std::hint::black_box;
 fn bench(criterion: &mut Criterion) {
     let scene = gallery::cornell_box();
     let mut group = criterion.benchmark_group("apply");
-    for patch_size in [0.5, 0.25, 0.125] {
+    for patch_size in [0.5, 0.25] {
         let bundles = Bundles::new(&scene, Resolution { patch_size, n_directions: 1 }).expect("a resolution");
         let system = assemble(&scene, &bundles, Exchange::default()).expect("a diffuse scene");
         let n = bundles.n_bundles();

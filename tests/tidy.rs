@@ -32,7 +32,7 @@ const DOORS: [(&str, &[&str]); 20] = [
     ("nalgebra", &["linalg"]),
     ("glam", &["geometry"]),
     ("obvhs", &["geometry"]),
-    ("pulp", &["assembly", "geometry"]),
+    ("pulp", &["assembly", "geometry", "linalg"]),
     ("robust", &["geometry"]),
     ("plotters", &["report"]),
     ("dejavu", &["report"]),

@@ -13,6 +13,6 @@ pub use exchange::{
 };
 pub use laws::Laws;
 pub use measurement::{Gather, Measurement};
-pub use operators::{Propagation, Transport};
+pub use operators::{AdjointTransport, Propagation, Transport};
 pub use orbits::Orbits;
-pub use system::{AssemblyError, System, assemble, assemble_orbits, assemble_watched};
+pub use system::{AdjointSystem, AssemblyError, System, assemble, assemble_orbits, assemble_watched};

@@ -1,6 +1,6 @@
 //! Propagation G and transport K = S G as operators: unformed, one stored matrix behind both.
 
-use crate::linalg::{Block, Diagonal, LinearOperator, Matrix};
+use crate::linalg::{Block, Diagonal, LinearOperator, Matrix, Scratch};
 use std::sync::Arc;
 
 /// G = M⁻¹ T: outgoing radiance to incident radiance. Grey. Only T is stored; Gᵀ = T M⁻¹ because T is symmetric.
@@ -8,11 +8,12 @@ use std::sync::Arc;
 pub struct Propagation {
     exchange: Arc<Matrix>,
     etendue: Arc<[f64]>,
+    scratch: Scratch,
 }
 
 impl Propagation {
     pub fn new(exchange: Arc<Matrix>, etendue: Arc<[f64]>) -> Self {
-        Self { exchange, etendue }
+        Self { exchange, etendue, scratch: Scratch::default() }
     }
 
     /// Calls `visit(j, Gᵢⱼ)` for the stored entries of row i.
@@ -47,9 +48,11 @@ impl LinearOperator for Propagation {
     }
 
     fn apply_transpose(&self, x: &Block, y: &mut Block) {
-        let mut scaled = x.clone();
-        self.divide(&mut scaled);
-        self.exchange.apply(&scaled, y);
+        self.scratch.with(x.n_rows(), x.n_columns(), |scaled| {
+            scaled.copy_from(x);
+            self.divide(scaled);
+            self.exchange.apply(scaled, y);
+        });
     }
 
     fn row(&self, band: usize, row: usize, out: &mut [f64]) {
@@ -64,6 +67,10 @@ impl LinearOperator for Propagation {
         out.iter_mut().zip(self.etendue.iter()).for_each(|(v, mu)| *v /= mu);
     }
 
+    fn is_nonnegative(&self) -> bool {
+        self.exchange.is_nonnegative()
+    }
+
     fn n_entries(&self) -> u64 {
         self.exchange.n_entries()
     }
@@ -74,11 +81,12 @@ impl LinearOperator for Propagation {
 pub struct Transport {
     scattering: Diagonal,
     propagation: Propagation,
+    scratch: Scratch,
 }
 
 impl Transport {
     pub fn new(scattering: Diagonal, propagation: Propagation) -> Self {
-        Self { scattering, propagation }
+        Self { scattering, propagation, scratch: Scratch::default() }
     }
 
     /// S.
@@ -115,9 +123,11 @@ impl LinearOperator for Transport {
     }
 
     fn apply_transpose(&self, x: &Block, y: &mut Block) {
-        let mut scattered = x.clone();
-        self.scatter(&mut scattered);
-        self.propagation.apply_transpose(&scattered, y);
+        self.scratch.with(x.n_rows(), x.n_columns(), |scattered| {
+            scattered.copy_from(x);
+            self.scatter(scattered);
+            self.propagation.apply_transpose(scattered, y);
+        });
     }
 
     fn row(&self, band: usize, row: usize, out: &mut [f64]) {
@@ -131,7 +141,74 @@ impl LinearOperator for Transport {
         out.iter_mut().zip(self.scattering.values().column(band)).for_each(|(v, s)| *v *= s);
     }
 
+    fn is_nonnegative(&self) -> bool {
+        self.scattering.is_nonnegative() && self.propagation.is_nonnegative()
+    }
+
     fn n_entries(&self) -> u64 {
         self.propagation.n_entries()
+    }
+}
+
+/// K* = G S, the adjoint of K in the étendue inner product: one bounce of importance.
+#[derive(Clone, Debug)]
+pub struct AdjointTransport {
+    transport: Transport,
+    scratch: Scratch,
+}
+
+impl AdjointTransport {
+    pub fn new(transport: Transport) -> Self {
+        Self { transport, scratch: Scratch::default() }
+    }
+}
+
+impl LinearOperator for AdjointTransport {
+    fn n_rows(&self) -> usize {
+        self.transport.n_rows()
+    }
+
+    fn n_columns(&self) -> usize {
+        self.transport.n_columns()
+    }
+
+    fn n_bands(&self) -> usize {
+        self.transport.n_bands()
+    }
+
+    fn apply(&self, x: &Block, y: &mut Block) {
+        self.scratch.with(x.n_rows(), x.n_columns(), |scattered| {
+            scattered.copy_from(x);
+            self.transport.scatter(scattered);
+            self.transport.propagation.apply(scattered, y);
+        });
+    }
+
+    fn apply_transpose(&self, x: &Block, y: &mut Block) {
+        self.transport.propagation.apply_transpose(x, y);
+        self.transport.scatter(y);
+    }
+
+    fn row(&self, band: usize, row: usize, out: &mut [f64]) {
+        self.transport.propagation.row(0, row, out);
+        out.iter_mut().zip(self.transport.scattering.values().column(band)).for_each(|(v, s)| *v *= s);
+    }
+
+    fn column(&self, band: usize, column: usize, out: &mut [f64]) {
+        self.transport.propagation.column(0, column, out);
+        let s = self.transport.scattering.values().get(column, band);
+        out.iter_mut().for_each(|v| *v *= s);
+    }
+
+    fn diagonal(&self, band: usize, out: &mut [f64]) {
+        self.transport.diagonal(band, out);
+    }
+
+    fn is_nonnegative(&self) -> bool {
+        self.transport.is_nonnegative()
+    }
+
+    fn n_entries(&self) -> u64 {
+        self.transport.n_entries()
     }
 }

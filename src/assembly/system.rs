@@ -1,9 +1,10 @@
 //! The assembled equation of one scene at one resolution.
 
 use super::exchange::{self, Exchange, ExchangeReport, RepairMethod};
+use super::operators::AdjointTransport;
 use super::{Laws, Orbits, Propagation, Transport};
 use crate::basis::{Bundles, Element};
-use crate::linalg::{Block, Diagonal, Equation, LinearOperator, Matrix, SelfAdjoint};
+use crate::linalg::{Block, Diagonal, Equation, LinearOperator, Matrix, SelfAdjoint, Unknown};
 use crate::scene::Scene;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -17,6 +18,8 @@ pub struct System {
     etendue: Arc<[f64]>,
     sinks: Block,
     emission: Block,
+    /// 1 − Σⱼ Kᵢⱼ of a closed system, by what is absorbed and what is lost.
+    absorption: Option<Block>,
     transport: Transport,
     scattering_root: Diagonal,
     repair_scale: Vec<f64>,
@@ -116,12 +119,19 @@ impl System {
         let exchange = Arc::new(exchange);
         let root = Block::from_fn(albedo.n_rows(), albedo.n_columns(), |i, band| albedo.get(i, band).sqrt());
         let propagation = Propagation::new(exchange.clone(), etendue.clone());
+        let absorbed = |i: usize, band: usize| {
+            let a = albedo.get(i, band);
+            (1.0 - a) + a * (sinks.row(i).sum::<f64>() / etendue[i])
+        };
+        let is_closed = report.repair.is_some();
+        let absorption = is_closed.then(|| Block::from_fn(albedo.n_rows(), albedo.n_columns(), absorbed));
         Self {
             exchange,
             exchange_error: Arc::new(error),
             etendue,
             sinks,
             emission,
+            absorption,
             transport: Transport::new(Diagonal::new(albedo), propagation),
             scattering_root: Diagonal::new(root),
             repair_scale,
@@ -196,6 +206,7 @@ impl System {
             exchange,
             sinks,
             transport: Transport::new(self.transport.scattering().clone(), propagation),
+            absorption: None,
             repair_scale: Vec::new(),
             report: ExchangeReport { repair: None, ..self.report },
             ..self.clone()
@@ -225,17 +236,40 @@ impl System {
         Laws::measure(self)
     }
 
-    /// What a solver sees.
+    /// What a solver of radiance sees.
     pub fn equation(&self) -> Equation<'_> {
         Equation {
             transport: &self.transport,
             emission: &self.emission,
-            self_adjoint: self.is_self_adjoint.then(|| SelfAdjoint {
-                etendue: &self.etendue,
-                propagation: self.transport.propagation(),
-                scattering_root: &self.scattering_root,
-            }),
+            absorption: self.absorption.as_ref(),
+            self_adjoint: self.self_adjoint(Unknown::Radiance),
         }
+    }
+
+    /// The adjoint, whose solution is importance. One product.
+    pub fn adjoint(&self) -> AdjointSystem<'_> {
+        // What G S loses of a row: what the rows of G lose, and what is absorbed where they end.
+        let absorption = self.absorption.as_ref().map(|_| {
+            let albedo = self.transport.scattering().values();
+            let absorbed = Block::from_fn(self.n_bundles(), self.n_bands(), |i, band| 1.0 - albedo.get(i, band));
+            let mut absorption = Block::zeros(self.n_bundles(), self.n_bands());
+            self.transport.propagation().apply(&absorbed, &mut absorption);
+            for band in 0..self.n_bands() {
+                let losses = (0..self.n_bundles()).map(|i| self.sinks.row(i).sum::<f64>() / self.etendue[i]);
+                absorption.column_mut(band).iter_mut().zip(losses).for_each(|(a, lost)| *a += lost);
+            }
+            absorption
+        });
+        AdjointSystem { system: self, transport: AdjointTransport::new(self.transport.clone()), absorption }
+    }
+
+    fn self_adjoint(&self, unknown: Unknown) -> Option<SelfAdjoint<'_>> {
+        self.is_self_adjoint.then(|| SelfAdjoint {
+            etendue: &self.etendue,
+            propagation: self.transport.propagation(),
+            scattering_root: &self.scattering_root,
+            unknown,
+        })
     }
 
     /// Incident irradiance of every bundle from solved radiance, W m⁻²: H = π G L in the one bin of a hemisphere.
@@ -244,5 +278,24 @@ impl System {
         self.transport.propagation().apply(radiance, &mut incident);
         incident.values_mut().iter_mut().for_each(|v| *v *= PI);
         incident
+    }
+}
+
+/// A system looked at from the sensors: J = W + K* J with K* = G S.
+pub struct AdjointSystem<'a> {
+    system: &'a System,
+    transport: AdjointTransport,
+    absorption: Option<Block>,
+}
+
+impl AdjointSystem<'_> {
+    /// What a solver of importance sees, for W as coefficients of radiance, n × bands: ⟨W, L⟩ = ⟨E, J⟩ in the étendue inner product.
+    pub fn equation<'b>(&'b self, measurement: &'b Block) -> Equation<'b> {
+        Equation {
+            transport: &self.transport,
+            emission: measurement,
+            absorption: self.absorption.as_ref(),
+            self_adjoint: self.system.self_adjoint(Unknown::Importance),
+        }
     }
 }

@@ -135,7 +135,7 @@ pub fn record<'a>(
             n_adjoint_applies: report.n_adjoint_applies,
             products: report.products,
             true_residual: report.true_residual,
-            error_bound: report.bracket.as_ref().map(|bracket| bracket.relative_width(&solution.radiance)),
+            error_bound: report.bracket.as_ref().map(|bracket| bracket.relative_width()),
             seconds,
         },
         notes: tessellations(scene),

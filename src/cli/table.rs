@@ -50,7 +50,7 @@ pub fn table(scene: &Scene, bundles: &Bundles, system: &System, solution: &Solut
         spoken(report.stop),
         report.products
     ));
-    let bound = report.bracket.as_ref().map(|bracket| bracket.relative_width(&solution.radiance));
+    let bound = report.bracket.as_ref().map(|bracket| bracket.relative_width());
     let bound =
         bound.map_or(String::new(), |bound| format!(", error at most {} of the largest radiance", short(bound)));
     lines.push(format!("true residual {}{bound}", short(report.true_residual)));

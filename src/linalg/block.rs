@@ -45,6 +45,18 @@ impl Block {
         (0..self.n_columns).map(|c| self.column(c))
     }
 
+    /// C columns in a row.
+    pub(super) fn columns_from<const C: usize>(&self, first: usize) -> [&[f64]; C] {
+        std::array::from_fn(|c| self.column(first + c))
+    }
+
+    /// The same to write to.
+    pub(super) fn columns_from_mut<const C: usize>(&mut self, first: usize) -> [&mut [f64]; C] {
+        let n = self.n_rows;
+        let mut rest = &mut self.values[first * n..];
+        std::array::from_fn(|_| rest.split_off_mut(..n).unwrap_or_default())
+    }
+
     pub fn get(&self, row: usize, column: usize) -> f64 {
         self.values[column * self.n_rows + row]
     }

@@ -50,6 +50,10 @@ impl LinearOperator for Diagonal {
         self.row(band, column, out);
     }
 
+    fn is_nonnegative(&self) -> bool {
+        self.0.values().iter().all(|v| *v >= 0.0)
+    }
+
     fn n_entries(&self) -> u64 {
         self.0.values().len() as u64
     }

@@ -124,6 +124,10 @@ impl LinearOperator for Matrix {
         self.operator().column(band, column, out);
     }
 
+    fn is_nonnegative(&self) -> bool {
+        self.operator().is_nonnegative()
+    }
+
     fn n_entries(&self) -> u64 {
         self.operator().n_entries()
     }

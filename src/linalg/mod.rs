@@ -1,5 +1,6 @@
 //! Operators, blocks of vectors, factorizations. The only door to `faer`, `sprs` and `nalgebra`.
 
+mod adjoint;
 mod block;
 mod dense;
 mod diagonal;
@@ -8,14 +9,18 @@ mod equation;
 mod factor;
 mod matrix;
 mod operator;
+mod scratch;
+mod share;
 mod sparse;
 
+pub use adjoint::Adjoint;
 pub use block::{Block, max_abs, worst};
 pub use dense::Dense;
 pub use diagonal::Diagonal;
 pub use eigen::symmetric_eigenvalues;
-pub use equation::{Equation, SelfAdjoint};
+pub use equation::{Equation, SelfAdjoint, Unknown};
 pub use factor::{CholeskyFactor, FactorError, LuFactor, NalgebraLu};
 pub use matrix::Matrix;
 pub use operator::LinearOperator;
+pub use scratch::Scratch;
 pub use sparse::Sparse;

@@ -37,6 +37,17 @@ pub trait LinearOperator: Sync {
         }
     }
 
+    /// True if no entry of any band is below zero, or not a number. Reads every row unless the implementation knows better.
+    fn is_nonnegative(&self) -> bool {
+        let mut row = vec![0.0; self.n_columns()];
+        (0..self.n_bands()).all(|band| {
+            (0..self.n_rows()).all(|i| {
+                self.row(band, i, &mut row);
+                row.iter().all(|v| *v >= 0.0)
+            })
+        })
+    }
+
     /// Stored entries that one apply reads: the currency of the work counts.
     fn n_entries(&self) -> u64;
 }

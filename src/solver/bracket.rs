@@ -1,55 +1,107 @@
 //! Bounds around the discrete answer that trust no solver.
 //!
-//! With K ≥ 0 and every row of K summing to less than one, (I − K)⁻¹ ≥ 0, and for any L̃ with residual r = E + K L̃ − L̃:
+//! Where K ≥ 0, every L₊ with L₊ ≥ E + K L₊ lies above (I − K)⁻¹E, and every L₋ with L₋ ≤ E + K L₋ below it. For any L̃ with residual
+//! r = E + K L̃ − L̃ and any w > 0 with b = (I − K) w > 0,
 //!
 //! ```text
-//! L − L̃ = (I − K)⁻¹ r,      −max(−r, 0) / (1 − ‖K‖∞)  ≤  L − L̃  ≤  max(r, 0) / (1 − ‖K‖∞)
+//! L₊ = L̃ + s w,      s = max (rᵢ / bᵢ)⁺,      and, one step closer,      E + K L₊ = L̃ + r + s (w − b)
 //! ```
 //!
-//! The residual and the row sums are inflated by a bound on their own rounding. Cost: one product with K.
+//! and likewise below. With w = 1 the loss b is the absorption, known without subtracting; where some rows lose nothing, w counts the
+//! bounces until they do, w = Σₘ Kᵐ 1, b = 1 − Kᵐ⁺¹ 1. Residual and losses are widened by a bound on their own rounding.
+//!
+//! Cost: no product where the absorption is given and nowhere zero, one where it is not given, one a bounce of w. Source: Collatz
+//! (1952), "Aufgaben monotoner Art"; Varga (2000), §3.5.
 
-use crate::linalg::{Block, Equation};
+use crate::linalg::{Block, Equation, max_abs};
 
-/// L − below ≤ (I − K)⁻¹E ≤ L + above for every bundle; one number a band.
+/// Bounces after which rows that lose nothing are given up.
+const BOUNCES: usize = 64;
+
+/// low ≤ (I − K)⁻¹E ≤ high, bundle by bundle, n × bands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bracket {
-    pub below: Vec<f64>,
-    pub above: Vec<f64>,
+    pub low: Block,
+    pub high: Block,
 }
 
 impl Bracket {
-    /// The wider side of the worst band, relative to that band's largest radiance.
-    pub fn relative_width(&self, radiance: &Block) -> f64 {
-        let sides = self.below.iter().zip(&self.above);
-        sides.zip(radiance.columns()).fold(0.0, |worst: f64, ((below, above), column)| {
-            let scale = crate::linalg::max_abs(column);
-            if scale > 0.0 { worst.max(below.max(*above) / scale) } else { worst }
-        })
+    /// Half its width where it is widest, relative to the largest radiance of that band.
+    pub fn relative_width(&self) -> f64 {
+        let bands = self.low.columns().zip(self.high.columns()).map(|(low, high)| {
+            let widest = low.iter().zip(high).fold(0.0, |widest: f64, (low, high)| widest.max(0.5 * (high - low)));
+            let scale = max_abs(high).max(max_abs(low));
+            if scale > 0.0 { widest / scale } else { 0.0 }
+        });
+        bands.fold(0.0, f64::max)
     }
 }
 
-/// The bracket around `radiance` with this residual; `None` where some row of K sums to one or more.
+/// The bracket around `radiance` with this residual; `None` where K has entries below zero, or loses nothing in many bounces.
 pub(super) fn around(equation: Equation<'_>, radiance: &Block, residual: &Block) -> Option<Bracket> {
-    let (n, n_bands) = (radiance.n_rows(), radiance.n_columns());
-    let ones = Block::from_fn(n, n_bands, |_, _| 1.0);
-    let mut gain = Block::zeros(n, n_bands);
-    equation.transport.apply(&ones, &mut gain);
-
-    let mut bracket = Bracket { below: Vec::new(), above: Vec::new() };
-    for band in 0..n_bands {
-        // A sum of n products is off by at most (n + 2) ulp of the sum of their magnitudes; K ≥ 0, so that is ‖K‖ ‖L‖.
-        let rounding = (n as f64 + 4.0) * f64::EPSILON;
-        let gain = gain.column(band).iter().copied().fold(0.0, f64::max) * (1.0 + rounding);
-        let contraction = 1.0 - gain;
-        if contraction.is_nan() || contraction <= 0.0 {
-            return None;
-        }
-        let largest = |block: &Block| crate::linalg::max_abs(block.column(band));
-        let slack = rounding * (largest(equation.emission) + 2.0 * largest(radiance));
-        let side = |sign: f64| residual.column(band).iter().map(|r| sign * r).fold(0.0, f64::max);
-        let bound = |worst: f64| (worst + slack) / contraction * (1.0 + 4.0 * f64::EPSILON);
-        bracket.below.push(bound(side(-1.0)));
-        bracket.above.push(bound(side(1.0)));
+    if !equation.transport.is_nonnegative() {
+        return None;
     }
-    Some(bracket)
+    let (n, n_bands) = (radiance.n_rows(), radiance.n_columns());
+    // A sum of n products is off by at most (n + 2) ulp of the sum of their magnitudes.
+    let rounding = (n as f64 + 4.0) * f64::EPSILON;
+    let (weight, loss) = weight(equation, rounding)?;
+
+    let (mut low, mut high) = (Block::zeros(n, n_bands), Block::zeros(n, n_bands));
+    for band in 0..n_bands {
+        let (e, l, r) = (equation.emission.column(band), radiance.column(band), residual.column(band));
+        let (w, b) = (weight.column(band), loss.column(band));
+        let is_lit = e.iter().all(|e| *e >= 0.0);
+        let brightest = max_abs(l);
+        // K ≥ 0, so that where L ≥ 0 the magnitudes that a residual sums are what it sums.
+        let is_positive = l.iter().all(|l| *l >= 0.0);
+        let gathered = |i: usize| if is_positive { (r[i] + l[i] - e[i]).abs() } else { brightest };
+        let slack = |i: usize| 2.0 * rounding * (e[i].abs() + l[i].abs() + gathered(i));
+        let side = |sign: f64, out: &mut Block| {
+            let scale = (0..n).fold(0.0, |worst: f64, i| worst.max((sign * r[i] + slack(i)) / b[i]));
+            let bounds = out.column_mut(band).iter_mut().enumerate();
+            bounds.for_each(|(i, bound)| {
+                let whole = scale * w[i];
+                let closer = sign * r[i] + slack(i) + scale * (w[i] - b[i]).max(0.0);
+                *bound = l[i] + sign * whole.min(closer) * (1.0 + 8.0 * f64::EPSILON);
+            });
+        };
+        side(-1.0, &mut low);
+        side(1.0, &mut high);
+        // Where nothing takes light away there is at least what is emitted.
+        if is_lit {
+            low.column_mut(band).iter_mut().zip(e).for_each(|(low, e)| *low = low.max(*e));
+        }
+    }
+    Some(Bracket { low, high })
+}
+
+/// w > 0 and a lower bound b > 0 of (I − K) w, n × bands each.
+fn weight(equation: Equation<'_>, rounding: f64) -> Option<(Block, Block)> {
+    let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
+    let mut weight = Block::from_fn(n, n_bands, |_, _| 1.0);
+    let absorption = match equation.absorption {
+        Some(absorption) => Block::from_fn(n, n_bands, |i, band| absorption.get(i, band) * (1.0 - 8.0 * f64::EPSILON)),
+        None => {
+            let mut gain = Block::zeros(n, n_bands);
+            equation.transport.apply(&weight, &mut gain);
+            Block::from_fn(n, n_bands, |i, band| 1.0 - gain.get(i, band) * (1.0 + rounding))
+        }
+    };
+    let mut loss = absorption.clone();
+    let mut scratch = Block::zeros(n, n_bands);
+    for _ in 0..BOUNCES {
+        if loss.values().iter().all(|b| *b > 0.0) {
+            return Some((weight, loss));
+        }
+        // What is left after m bounces joins the weight; what is lost in m + 1 is lost in one, or in m after it.
+        for (w, b) in weight.values_mut().iter_mut().zip(loss.values()) {
+            *w += 1.0 - b;
+        }
+        equation.transport.apply(&loss, &mut scratch);
+        for ((b, carried), a) in loss.values_mut().iter_mut().zip(scratch.values()).zip(absorption.values()) {
+            *b = a + carried - rounding * carried.abs();
+        }
+    }
+    None
 }

@@ -1,7 +1,7 @@
 //! Conjugate gradients in the étendue inner product.
 //!
 //! ```text
-//! (I − S^½ G S^½) u = S^½ G E,      L = E + S^½ u,      ⟨a, b⟩ = Σ μᵢ aᵢ bᵢ
+//! (I − A) u = S^½ G E,      L = E + S^½ u,      A = S^½ G S^½,      ⟨a, b⟩ = Σ μᵢ aᵢ bᵢ
 //! ```
 //!
 //! Needs the self-adjoint form, checks it by two products, and ρ(K) < 1. One product an iteration; the residual of L is S^½ times
@@ -10,7 +10,7 @@
 
 use super::monitor::Monitor;
 use super::report::{band_residual, conclude, relative_residual};
-use super::self_adjoint::{check_self_adjoint, inner};
+use super::self_adjoint::check_self_adjoint;
 use super::{Observer, Solution, SolveError, Solver};
 use crate::linalg::{Block, Equation};
 
@@ -28,34 +28,29 @@ impl Solver for Cg {
 
     fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
         let method = self.name();
-        let mut monitor = Monitor::new(method, self.tolerance, observer);
+        let mut monitor = Monitor::new(method, equation, self.tolerance, observer);
         let form = equation.self_adjoint.ok_or(SolveError::NoSelfAdjointForm { method })?;
         check_self_adjoint(method, form)?;
         monitor.count_applies(2);
 
-        // Start from u = 0: r = S^½ G E.
+        // Start from u = 0.
         let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
         let zeros = || Block::zeros(n, n_bands);
-        let (mut u, mut r, mut scratch, mut image) = (zeros(), zeros(), zeros(), zeros());
-        form.propagation.apply(equation.emission, &mut scratch);
-        monitor.count_applies(1);
-        form.scattering_root.apply(&scratch, &mut r);
+        let (mut r, mut scratch, mut direction, mut image) = (zeros(), zeros(), zeros(), zeros());
+        monitor.count_applies(form.right_side(equation.emission, &mut scratch, &mut r));
         let mut p = r.clone();
         let (mut radiance, mut residual) = (equation.emission.clone(), zeros());
-        let mut norms: Vec<f64> =
-            (0..n_bands).map(|band| inner(form.etendue, r.column(band), r.column(band))).collect();
+        let mut norms: Vec<f64> = (0..n_bands).map(|band| form.inner(r.column(band), r.column(band))).collect();
 
         let stop = loop {
-            form.scattering_root.apply(&r, &mut residual);
+            form.residual(&r, &mut residual);
             if let Some(stop) = monitor.check(relative_residual(equation.emission, &residual), &radiance)? {
                 break stop;
             }
 
-            // image = (I − S^½ G S^½) p.
-            form.scattering_root.apply(&p, &mut image);
-            form.propagation.apply(&image, &mut scratch);
+            // image = (I − A) p.
+            form.apply(&p, &mut scratch, &mut direction, &mut image);
             monitor.count_applies(1);
-            form.scattering_root.apply(&scratch, &mut image);
             for (a, p) in image.values_mut().iter_mut().zip(p.values()) {
                 *a = p - *a;
             }
@@ -66,7 +61,7 @@ impl Solver for Cg {
                     continue;
                 }
                 // Step to the minimum along p, and turn the next direction conjugate.
-                let curvature = inner(form.etendue, p.column(band), image.column(band));
+                let curvature = form.inner(p.column(band), image.column(band));
                 let iteration = monitor.work.n_iterations;
                 if !curvature.is_finite() {
                     return Err(SolveError::NotFinite { method, iteration });
@@ -75,15 +70,13 @@ impl Solver for Cg {
                     return Err(SolveError::NotPositiveDefinite { method, band, iteration, curvature });
                 }
                 let step = *norm / curvature;
-                add_scaled(u.column_mut(band), step, p.column(band));
+                add_scaled(radiance.column_mut(band), step, direction.column(band));
                 add_scaled(r.column_mut(band), -step, image.column(band));
-                let next = inner(form.etendue, r.column(band), r.column(band));
+                let next = form.inner(r.column(band), r.column(band));
                 let turn = next / *norm;
                 p.column_mut(band).iter_mut().zip(r.column(band)).for_each(|(p, r)| *p = r + turn * *p);
                 *norm = next;
             }
-            form.scattering_root.apply(&u, &mut radiance);
-            radiance.add_scaled(1.0, equation.emission);
         };
         conclude(method, equation, radiance, stop, monitor.work, monitor.history)
     }

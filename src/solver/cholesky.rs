@@ -33,11 +33,9 @@ impl Solver for Cholesky {
         let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
         let weight: Vec<f64> = form.etendue.iter().map(|mu| mu.sqrt()).collect();
 
-        // The right-hand side, S^½ G E, for all bands at once.
-        let mut incident = Block::zeros(n, n_bands);
-        form.propagation.apply(equation.emission, &mut incident);
-        let mut right = Block::zeros(n, n_bands);
-        form.scattering_root.apply(&incident, &mut right);
+        // The right-hand side for all bands at once.
+        let (mut scratch, mut right) = (Block::zeros(n, n_bands), Block::zeros(n, n_bands));
+        let mut n_applies = 2 + form.right_side(equation.emission, &mut scratch, &mut right);
 
         let mut answer = Block::zeros(n, n_bands);
         for band in 0..n_bands {
@@ -50,9 +48,8 @@ impl Solver for Cholesky {
         }
 
         let mut radiance = Block::zeros(n, n_bands);
-        form.scattering_root.apply(&answer, &mut radiance);
-        radiance.add_scaled(1.0, equation.emission);
-        let work = Work { n_applies: 3, products: 3.0, ..Work::default() };
+        n_applies += form.answer(equation.emission, &answer, &mut scratch, &mut radiance);
+        let work = Work { n_applies, products: n_applies as f64, ..Work::default() };
         conclude(method, equation, radiance, Stop::Direct, work, Vec::new())
     }
 }

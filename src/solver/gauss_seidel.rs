@@ -28,7 +28,7 @@ impl Solver for GaussSeidel {
     }
 
     fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
-        let mut monitor = Monitor::new(self.name(), self.tolerance, observer);
+        let mut monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
         let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
         let own = one_minus_diagonal(self.name(), equation)?;
         let mut radiance = equation.emission.clone();

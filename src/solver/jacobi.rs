@@ -25,7 +25,7 @@ impl Solver for Jacobi {
     }
 
     fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
-        let mut monitor = Monitor::new(self.name(), self.tolerance, observer);
+        let mut monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
         let own = one_minus_diagonal(self.name(), equation)?;
         let mut radiance = equation.emission.clone();
         let mut residual = Block::zeros(radiance.n_rows(), radiance.n_columns());

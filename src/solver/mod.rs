@@ -19,7 +19,7 @@ mod southwell;
 pub use bracket::Bracket;
 pub use cg::Cg;
 pub use cholesky::Cholesky;
-pub use error::SolveError;
+pub use error::{RowGain, SolveError};
 pub use gauss_seidel::GaussSeidel;
 pub use jacobi::Jacobi;
 pub use lu::{Lu, LuNalgebra};

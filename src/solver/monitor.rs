@@ -1,8 +1,8 @@
 //! What every iteration is asked: converged, diverged, out of budget, told to stop?
 
 use super::report::Work;
-use super::{Iteration, Observer, SolveError, Stop};
-use crate::linalg::Block;
+use super::{Iteration, Observer, RowGain, SolveError, Stop};
+use crate::linalg::{Block, Equation};
 use std::ops::ControlFlow;
 
 /// A method that has spent this many products ends with [`Stop::Budget`]; an observer may end it sooner.
@@ -21,6 +21,7 @@ const PROGRESS: f64 = 1e-7;
 /// Keeps the history of one solve and decides when it ends.
 pub(super) struct Monitor<'a> {
     method: &'static str,
+    equation: Equation<'a>,
     tolerance: f64,
     observer: &'a mut dyn Observer,
     best: f64,
@@ -31,9 +32,10 @@ pub(super) struct Monitor<'a> {
 }
 
 impl<'a> Monitor<'a> {
-    pub fn new(method: &'static str, tolerance: f64, observer: &'a mut dyn Observer) -> Self {
+    pub fn new(method: &'static str, equation: Equation<'a>, tolerance: f64, observer: &'a mut dyn Observer) -> Self {
         Self {
             method,
+            equation,
             tolerance,
             observer,
             best: f64::INFINITY,
@@ -56,7 +58,14 @@ impl<'a> Monitor<'a> {
         }
         self.best = self.best.min(residual);
         if residual > DIVERGENCE * self.best.max(f64::MIN_POSITIVE) && residual > 1.0 {
-            return Err(SolveError::Diverged { method: self.method, iteration: index, residual, best: self.best });
+            let gain = RowGain::of(self.equation);
+            return Err(SolveError::Diverged {
+                method: self.method,
+                iteration: index,
+                residual,
+                best: self.best,
+                gain,
+            });
         }
         let iteration = Iteration { index, products: self.work.products, residual, iterate };
         let told = self.observer.observe(iteration);

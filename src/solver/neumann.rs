@@ -25,7 +25,7 @@ impl Solver for Neumann {
     }
 
     fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
-        let mut monitor = Monitor::new(self.name(), self.tolerance, observer);
+        let mut monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
         let mut radiance = equation.emission.clone();
         let mut term = equation.emission.clone();
         let mut next = Block::zeros(term.n_rows(), term.n_columns());

@@ -14,16 +14,11 @@ pub(super) fn check_self_adjoint(method: &'static str, form: SelfAdjoint<'_>) ->
     let (mut gx, mut gy) = (Block::zeros(n, 1), Block::zeros(n, 1));
     form.propagation.apply(&x, &mut gx);
     form.propagation.apply(&y, &mut gy);
-    let product = |a: &Block, b: &Block| inner(form.etendue, a.column(0), b.column(0));
+    let product = |a: &Block, b: &Block| form.inner(a.column(0), b.column(0));
     let scale = (product(&x, &x) * product(&gy, &gy)).sqrt() + (product(&gx, &gx) * product(&y, &y)).sqrt();
     let violation = (product(&x, &gy) - product(&gx, &y)).abs() / scale.max(f64::MIN_POSITIVE);
     if violation > SELF_ADJOINT {
         return Err(SolveError::NotSelfAdjoint { method, violation, allowed: SELF_ADJOINT });
     }
     Ok(())
-}
-
-/// ⟨a, b⟩ = Σ μᵢ aᵢ bᵢ.
-pub(super) fn inner(etendue: &[f64], a: &[f64], b: &[f64]) -> f64 {
-    etendue.iter().zip(a).zip(b).map(|((mu, a), b)| mu * a * b).sum()
 }

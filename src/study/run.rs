@@ -197,7 +197,7 @@ fn solve_all(
             seconds,
             true_residual: report.true_residual,
             error: truth.map_or(0.0, |truth| relative_max(&solution.radiance, truth)),
-            error_bound: report.bracket.as_ref().map(|bracket| bracket.relative_width(&solution.radiance)),
+            error_bound: report.bracket.as_ref().map(|bracket| bracket.relative_width()),
             history,
         });
         if reference.is_none() {

@@ -1,8 +1,8 @@
 //! Equations made by hand, most of them without an answer: what solvers say of each.
 
-use etendue::linalg::{Block, Dense, Diagonal, Equation, FactorError, LinearOperator, SelfAdjoint};
+use etendue::linalg::{Block, Dense, Diagonal, Equation, FactorError, LinearOperator, SelfAdjoint, Unknown};
 use etendue::solver::{
-    self, Cg, Cholesky, GaussSeidel, Jacobi, Lu, LuNalgebra, Neumann, SolveError, Solver, Southwell, Stop,
+    self, Cg, Cholesky, GaussSeidel, Jacobi, Lu, LuNalgebra, Neumann, RowGain, SolveError, Solver, Southwell, Stop,
 };
 
 const TOLERANCE: f64 = 1e-12;
@@ -17,7 +17,7 @@ fn column(values: &[f64]) -> Block {
 
 /// Of a plain equation without a self-adjoint form.
 fn plain<'a>(transport: &'a dyn LinearOperator, emission: &'a Block) -> Equation<'a> {
-    Equation { transport, emission, self_adjoint: None }
+    Equation::plain(transport, emission)
 }
 
 fn error_of(solver: &dyn Solver, equation: Equation<'_>) -> SolveError {
@@ -56,8 +56,9 @@ impl ByHand {
 
     fn equation(&self) -> Equation<'_> {
         let (propagation, scattering_root) = (&self.propagation, &self.root);
-        let self_adjoint = Some(SelfAdjoint { etendue: &self.etendue, propagation, scattering_root });
-        Equation { transport: &self.transport, emission: &self.emission, self_adjoint }
+        let unknown = Unknown::Radiance;
+        let self_adjoint = Some(SelfAdjoint { etendue: &self.etendue, propagation, scattering_root, unknown });
+        Equation { self_adjoint, ..Equation::plain(&self.transport, &self.emission) }
     }
 }
 
@@ -104,9 +105,10 @@ fn gain_above_one_is_divergence_with_its_numbers() {
     let emission = column(&[1.0, 0.5]);
     for solver in stationary() {
         match error_of(&*solver, plain(&transport, &emission)) {
-            SolveError::Diverged { method, iteration, residual, best } => {
+            SolveError::Diverged { method, iteration, residual, best, gain } => {
                 assert_eq!(method, solver.name());
                 assert!(iteration > 10 && residual > 1e7 * best && best > 0.0, "{iteration} {residual} {best}");
+                assert_eq!(gain, Some(RowGain { band: 0, unknown: 0, gain: 1.5 }));
             }
             other => panic!("{}: {other}", solver.name()),
         }

@@ -84,23 +84,25 @@ fn brackets_hold_the_direct_answer() {
             let answer = solve(&*solver, case.system.equation());
             let bracket = answer.report.bracket.as_ref().unwrap();
             for band in 0..case.system.n_bands() {
-                // The truth lies in both intervals, so they meet.
-                let pairs = answer.radiance.column(band).iter().zip(reference.radiance.column(band));
-                for (l, truth) in pairs {
-                    assert!(l - bracket.below[band] <= truth + own.above[band], "{}", solver.name());
-                    assert!(l + bracket.above[band] >= truth - own.below[band], "{}", solver.name());
-                }
-                // No wider than the tolerance allows: the gain of K is at most the largest albedo.
+                // The truth lies in both intervals, so they meet, and the direct answer is within a hair of it.
                 let emission = case.system.emission().column(band).iter().copied().fold(0.0, f64::max);
-                let allowed = (LOOSE * emission + 1e-9 * emission) / (1.0 - gain);
-                assert!(bracket.below[band].max(bracket.above[band]) <= allowed, "{}", solver.name());
-                // Iterates that only ever add light lie below the truth, but for rounding.
-                if ["neumann", "jacobi", "gauss-seidel", "southwell"].contains(&solver.name()) {
-                    assert!(bracket.below[band] <= 1e-9 * emission / (1.0 - gain), "{}", solver.name());
+                for i in 0..case.system.n_bundles() {
+                    let (low, high) = (bracket.low.get(i, band), bracket.high.get(i, band));
+                    let truth = reference.radiance.get(i, band);
+                    let hair = own.high.get(i, band) - own.low.get(i, band);
+                    assert!(low - hair <= truth && truth <= high + hair, "{}: {low} {truth} {high}", solver.name());
+                    // No wider than the tolerance allows: the gain of K is at most the largest albedo.
+                    let allowed = (LOOSE * emission + 1e-9 * emission) / (1.0 - gain);
+                    assert!((truth - low).max(high - truth) <= 2.0 * allowed, "{}", solver.name());
+                    // Iterates that only ever add light lie below the truth, but for rounding.
+                    if ["neumann", "jacobi", "gauss-seidel", "southwell"].contains(&solver.name()) {
+                        let below = answer.radiance.get(i, band) - low;
+                        assert!(below <= 1e-9 * emission / (1.0 - gain), "{}", solver.name());
+                    }
                 }
             }
         }
-        assert!(own.relative_width(&reference.radiance) < AGREEMENT, "{}", case.entry.name);
+        assert!(own.relative_width() < AGREEMENT, "{}", case.entry.name);
     }
 }
 
@@ -115,8 +117,8 @@ fn brackets_hold_the_exact_answer_of_the_furnace() {
             for (band, exact) in radiance.iter().enumerate() {
                 // Closure is kept to 1e-14, and the furnace's answer moves by 1/(1 − a) times as much.
                 let closure = 1e-13 * exact;
-                for l in answer.radiance.column(band) {
-                    let (low, high) = (l - bracket.below[band] - closure, l + bracket.above[band] + closure);
+                for (low, high) in bracket.low.column(band).iter().zip(bracket.high.column(band)) {
+                    let (low, high) = (low - closure, high + closure);
                     assert!((low..=high).contains(exact), "{}: {low} {exact} {high}", solver.name());
                 }
             }
@@ -177,13 +179,17 @@ impl LinearOperator for Counting<'_> {
         self.inner.column(band, column, out);
     }
 
+    fn is_nonnegative(&self) -> bool {
+        self.inner.is_nonnegative()
+    }
+
     fn n_entries(&self) -> u64 {
         self.inner.n_entries()
     }
 }
 
-/// Products that every answer is verified with: its true residual and the gain of K for its bracket.
-const VERIFICATION: usize = 2;
+/// Products that every answer is verified with: its true residual.
+const VERIFICATION: usize = 1;
 
 #[test]
 fn work_is_counted_as_it_was_done() {

@@ -29,8 +29,8 @@ fn bits_of_answer(answer: &Solution) -> Vec<u64> {
     [
         answer.radiance.values(),
         &report.history,
-        &bracket.below,
-        &bracket.above,
+        bracket.low.values(),
+        bracket.high.values(),
         &[report.true_residual, report.products],
     ]
     .iter()
