@@ -16,6 +16,7 @@ mod format;
 mod gallery;
 mod image;
 mod laws;
+mod matrices;
 mod medium;
 mod operators;
 mod orbits;
