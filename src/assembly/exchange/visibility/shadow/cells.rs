@@ -55,9 +55,17 @@ impl Line {
         self.normal.dot(x - self.point)
     }
 
+    /// Heights that count as none: those of a sliver, or what rounding makes of zero. Of a function that vanishes all over the polygon's
+    /// plane nothing else is left.
+    fn grain(&self, polygon: &[Vec3], slope: f64, size: f64) -> f64 {
+        let reach = self.point.distance(polygon[0]) + size;
+        let rounding = 8.0 * f64::EPSILON * (reach + self.point.abs().max_element()) * self.normal.length();
+        (SLIVER * size * slope).max(rounding)
+    }
+
     /// Where the line enters and leaves a convex polygon, if it crosses it by more than a sliver.
     pub fn chord(&self, polygon: &[Vec3], slope: f64, size: f64) -> Option<[Vec3; 2]> {
-        let sliver = SLIVER * size * slope;
+        let sliver = self.grain(polygon, slope, size);
         let (mut above, mut below) = (false, false);
         let mut ends = [None; 2];
         let mut from = polygon[polygon.len() - 1];
@@ -80,7 +88,7 @@ impl Line {
 
     /// Adds the one or two parts of a convex polygon on either side.
     pub fn split(&self, polygon: &[Vec3], slope: f64, size: f64, into: &mut Pieces) {
-        let sliver = SLIVER * size * slope;
+        let sliver = self.grain(polygon, slope, size);
         let (mut above, mut below) = (false, false);
         for v in polygon {
             let height = self.at(*v);
