@@ -110,7 +110,7 @@ fn add(
     let line = Line { normal: gradient, point: edge.from };
     let slope = (gradient - normal.dot(gradient) * normal).length();
     let Some(eyes) = line.chord(part, slope, size) else { return };
-    let is_out_of_sight = |points: &[Vec3]| others.clone().any(|other| other.never_hides(&eyes, points));
+    let is_out_of_sight = |points: &[Vec3]| others.clone().any(|other| other.is_short_of(&eyes, points));
     if is_out_of_sight(&[point]) && ends.all(|end| is_out_of_sight(&[point, end])) {
         return;
     }
