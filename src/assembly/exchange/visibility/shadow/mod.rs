@@ -22,6 +22,7 @@ mod cells;
 mod cubature;
 mod events;
 mod flux;
+mod kinks;
 mod nature;
 
 pub use bodies::Bodies;

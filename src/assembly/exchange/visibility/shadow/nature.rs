@@ -1,8 +1,8 @@
 //! Where the integrand of a term is smooth, and how far from its singularities.
 
 use super::cubature::Nature;
-use super::events;
 use super::flux::Edge;
+use super::kinks::is_kinked;
 use crate::geometry::Vec3;
 
 /// What the integrand of a term is like on a cell with these corners.
@@ -11,7 +11,7 @@ pub fn nature(corners: &[Vec3; 4], target: &[Vec3], edges: &[Edge], is_cut: bool
     if !is_cut {
         return Nature::Kinked;
     }
-    if edges.len() > 1 && events::is_kinked(*corners, target, edges) {
+    if edges.len() > 1 && is_kinked(*corners, target, edges) {
         return Nature::Kinked;
     }
     let radius = corners.iter().map(|v| v.distance_squared(centre)).fold(0.0, f64::max).sqrt();
