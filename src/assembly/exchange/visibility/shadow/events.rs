@@ -10,8 +10,7 @@ pub fn find(part: &[Vec3], target: &[Vec3], edges: &[Edge], points: &mut Vec<Vec
     if edges.is_empty() {
         return;
     }
-    let normal = (part[1] - part[0]).cross(part[2] - part[0]).normalize_or_zero();
-    let size = size_of(part);
+    let (normal, size) = (normal_of(part), size_of(part));
 
     // Where an obstacle's edge passes a corner of the target.
     for (e, edge) in edges.iter().enumerate() {
@@ -74,4 +73,9 @@ fn add(
 /// The longest extent of a polygon from its first corner.
 pub fn size_of(polygon: &[Vec3]) -> f64 {
     polygon.iter().map(|v| v.distance_squared(polygon[0])).fold(0.0, f64::max).sqrt()
+}
+
+/// The unit normal of a polygon whose first corner is none between neighbours in line.
+pub fn normal_of(polygon: &[Vec3]) -> Vec3 {
+    (polygon[1] - polygon[0]).cross(polygon[2] - polygon[0]).normalize_or_zero()
 }

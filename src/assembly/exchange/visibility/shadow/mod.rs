@@ -19,6 +19,7 @@
 mod bodies;
 mod body;
 mod cells;
+mod cover;
 mod cubature;
 mod events;
 mod flux;
@@ -30,9 +31,10 @@ pub use bodies::Bodies;
 use crate::geometry::{Polygon, Vec3};
 use body::{Body, Lie, Plane};
 use cells::{Line, Pieces};
+use cover::cover;
 use cubature::Cell;
 use flux::{Edge, Scratch};
-use nature::{distance_squared, nature};
+use nature::{distance_squared, nature, singular_corners};
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -76,6 +78,7 @@ pub struct Desk {
     lines: Vec<(Line, f64)>,
     points: Vec<Vec3>,
     chain: Vec<usize>,
+    singular: Vec<usize>,
     cells: Vec<Cell>,
     pieces: Pieces,
     spare: Pieces,
@@ -193,8 +196,9 @@ impl Desk {
                 if face.lie(part) == Lie::Across {
                     let mut halves = Pieces::default();
                     let line = Line { normal: face.normal, point: face.point };
-                    line.keep(part, 1.0, 0.0, &mut halves);
-                    line.keep(part, -1.0, 0.0, &mut halves);
+                    let grain = cells::grain(part);
+                    line.keep(part, 1.0, grain, &mut halves);
+                    line.keep(part, -1.0, grain, &mut halves);
                     if line.chord(part, 1.0, events::size_of(part)).is_none() {
                         continue;
                     }
@@ -331,7 +335,8 @@ impl Desk {
                 Lie::Across => {
                     let line = Line { normal: -front.normal, point: front.point };
                     self.spare.clear();
-                    line.keep(&self.targets[target.clone()], 1.0, 0.0, &mut self.spare);
+                    let whole = &self.targets[target.clone()];
+                    line.keep(whole, 1.0, cells::grain(whole), &mut self.spare);
                     let start = self.targets.len();
                     self.targets.extend_from_slice(self.spare.iter().next()?);
                     target = start..self.targets.len();
@@ -354,13 +359,13 @@ impl Desk {
 
     /// Cuts the part along the lines on which the last term bends, and covers what is left with cells.
     fn cut_into_cells(&mut self, part: &[Vec3]) {
-        let Self { terms, targets, active, lines, pieces, spare, cells, points, .. } = self;
+        let Self { terms, targets, active, lines, pieces, spare, cells, points, singular, .. } = self;
         let number = terms.len() - 1;
         let (target, edges) = (&targets[terms[number].target.clone()], &active[terms[number].edges.clone()]);
         events::find(part, target, edges, points, lines);
         pieces.clear();
         pieces.add(part);
-        let size = events::size_of(part);
+        let (size, normal) = (events::size_of(part), events::normal_of(part));
         for (line, slope) in lines.iter().take(MOST_LINES) {
             spare.clear();
             for piece in pieces.iter() {
@@ -369,9 +374,11 @@ impl Desk {
             std::mem::swap(pieces, spare);
         }
         let is_cut = lines.len() <= MOST_LINES;
-        let nature = |_: usize, corners: &[Vec3; 4]| nature(corners, target, edges, is_cut);
+        let nature = |corners: &[Vec3; 4]| nature(corners, target, edges, is_cut);
         for piece in pieces.iter() {
-            Cell::cover(piece, number, &nature, cells);
+            singular.clear();
+            singular.extend(singular_corners(piece, normal, target, edges));
+            cover(piece, singular, number, &nature, cells);
         }
         terms[number].is_cut = is_cut;
     }
@@ -388,7 +395,7 @@ fn front(polygon: &[Vec3], plane: &Plane, part: &mut Vec<Vec3>) -> bool {
         Lie::Above => part.extend_from_slice(polygon),
         Lie::Across => {
             let mut half = Pieces::default();
-            Line { normal: plane.normal, point: plane.point }.keep(polygon, 1.0, 0.0, &mut half);
+            Line { normal: plane.normal, point: plane.point }.keep(polygon, 1.0, cells::grain(polygon), &mut half);
             part.extend(half.iter().next().into_iter().flatten());
         }
     }
