@@ -5,6 +5,15 @@ use crate::geometry::Vec3;
 /// Corners closer to a line than this, relative to the size of their polygon, lie on it: thinner slivers carry nothing.
 const SLIVER: f64 = 1e-10;
 
+/// Corners no further than this from a plane, relative to the size of their polygon, are left in it: the sides that rounding would make
+/// there have no direction.
+const GRAIN: f64 = 1e-13;
+
+/// Heights of this polygon's corners over a plane that are none.
+pub fn grain(polygon: &[Vec3]) -> f64 {
+    GRAIN * polygon.iter().map(|v| v.distance_squared(polygon[0])).fold(0.0, f64::max).sqrt()
+}
+
 /// Convex polygons in one allocation.
 #[derive(Clone, Default)]
 pub struct Pieces {

@@ -10,8 +10,7 @@ pub fn find(part: &[Vec3], target: &[Vec3], edges: &[Edge], points: &mut Vec<Vec
     if edges.is_empty() {
         return;
     }
-    let normal = (part[1] - part[0]).cross(part[2] - part[0]).normalize_or_zero();
-    let size = size_of(part);
+    let (normal, size) = (normal_of(part), size_of(part));
 
     // Where an obstacle's edge passes a corner of the target.
     for (e, edge) in edges.iter().enumerate() {
@@ -54,33 +53,8 @@ pub fn find(part: &[Vec3], target: &[Vec3], edges: &[Edge], points: &mut Vec<Vec
     }
 }
 
-/// True if, seen from somewhere in a cell with these corners, three edges of different outlines may pass each other in one direction: on a
-/// curve, where what is hidden bends inside the cell. The planes through x and the edges then share a line.
-///
-/// Nine points speak for the cell. Whether the crossing is in view is not asked, so that some cells are called kinked that are not.
-pub fn is_kinked([a, b, c, d]: [Vec3; 4], target: &[Vec3], edges: &[Edge]) -> bool {
-    let owner = edges[0].owner;
-    if edges.iter().all(|edge| edge.owner == owner) {
-        return false;
-    }
-    let centre = 0.25 * (a + b + c + d);
-    let rim = [a, 0.5 * (a + b), b, 0.5 * (b + c), c, 0.5 * (c + d), d, 0.5 * (d + a)];
-    let is_met = |one: &Edge, two: &Edge, three: &Edge| {
-        let twist = |x: Vec3| three.plane_from(x).dot(one.plane_from(x).cross(two.plane_from(x)));
-        let middle = twist(centre);
-        rim.iter().any(|x| twist(*x) * middle <= 0.0)
-    };
-    edges.iter().enumerate().any(|(i, one)| {
-        edges[i + 1..].iter().enumerate().filter(|(_, two)| two.owner != one.owner).any(|(j, two)| {
-            let apart = |three: &Edge| three.owner != one.owner && three.owner != two.owner;
-            let thirds = edges[i + 2 + j..].iter().copied().chain(sides_of(target));
-            thirds.filter(apart).any(|three| is_met(one, two, &three))
-        })
-    })
-}
-
 /// The sides of the target as edges that have it on their hidden side.
-fn sides_of(target: &[Vec3]) -> impl Iterator<Item = Edge> + Clone + '_ {
+pub fn sides_of(target: &[Vec3]) -> impl Iterator<Item = Edge> + Clone + '_ {
     (0..target.len()).map(|k| Edge { from: target[(k + 1) % target.len()], to: target[k], owner: TARGET })
 }
 
@@ -120,4 +94,9 @@ fn add(
 /// The longest extent of a polygon from its first corner.
 pub fn size_of(polygon: &[Vec3]) -> f64 {
     polygon.iter().map(|v| v.distance_squared(polygon[0])).fold(0.0, f64::max).sqrt()
+}
+
+/// The unit normal of a polygon whose first corner is none between neighbours in line.
+pub fn normal_of(polygon: &[Vec3]) -> Vec3 {
+    (polygon[1] - polygon[0]).cross(polygon[2] - polygon[0]).normalize_or_zero()
 }
