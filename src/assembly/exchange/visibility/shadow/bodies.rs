@@ -1,7 +1,7 @@
 //! The facets of a scene joined into convex bodies.
 
 use super::body::{Body, Plane, Rim};
-use crate::geometry::{Polygon, Tracer, Vec3, height};
+use crate::geometry::{DisjointSets, Polygon, Tracer, Vec3, height};
 use std::collections::HashMap;
 
 /// Solids of more facets are left in pieces: proving one convex costs facets times corners.
@@ -84,9 +84,9 @@ struct Joints<'a> {
     polygons: &'a [&'a Polygon],
     sides: Vec<Vec<Side>>,
     /// Facets joined without bending share a number.
-    flat: Forest,
+    flat: DisjointSets,
     /// Facets joined at all share a number.
-    solid: Forest,
+    solid: DisjointSets,
     /// Heights that are rounding.
     grain: f64,
 }
@@ -106,7 +106,7 @@ impl<'a> Joints<'a> {
                 run.entry((bits(from), bits(to))).and_modify(|entry| entry.1 += 1).or_insert((facet, 1));
             }
         }
-        let (mut flat, mut solid) = (Forest::new(polygons.len()), Forest::new(polygons.len()));
+        let (mut flat, mut solid) = (DisjointSets::new(polygons.len()), DisjointSets::new(polygons.len()));
         let sides = polygons
             .iter()
             .enumerate()
@@ -134,7 +134,7 @@ impl<'a> Joints<'a> {
     /// The bodies of more than one facet.
     fn bodies(mut self) -> Vec<Joined> {
         let n = self.polygons.len();
-        let (solid, flat): (Vec<usize>, Vec<usize>) = (0..n).map(|i| (self.solid.root(i), self.flat.root(i))).unzip();
+        let (solid, flat): (Vec<usize>, Vec<usize>) = (0..n).map(|i| (self.solid.least(i), self.flat.least(i))).unzip();
         let gather = |roots: &[usize], of: &[usize]| {
             let mut groups: HashMap<usize, Vec<usize>> = HashMap::new();
             of.iter().for_each(|&facet| groups.entry(roots[facet]).or_default().push(facet));
@@ -320,26 +320,4 @@ fn is_flat(a: &Polygon, b: &Polygon, grain: f64) -> bool {
     let within =
         |p: &Polygon, q: &Polygon| p.vertices().iter().all(|v| height(q.normal(), q.centroid(), *v).abs() <= grain);
     a.normal().dot(b.normal()) > 0.0 && within(a, b) && within(b, a)
-}
-
-/// Disjoint sets.
-struct Forest(Vec<usize>);
-
-impl Forest {
-    fn new(n: usize) -> Self {
-        Self((0..n).collect())
-    }
-
-    fn root(&mut self, mut i: usize) -> usize {
-        while self.0[i] != i {
-            self.0[i] = self.0[self.0[i]];
-            i = self.0[i];
-        }
-        i
-    }
-
-    fn join(&mut self, i: usize, j: usize) {
-        let (a, b) = (self.root(i), self.root(j));
-        self.0[a.max(b)] = a.min(b);
-    }
 }
