@@ -83,7 +83,8 @@ impl Cell {
         let Nature::Kinked(kinks) = &self.nature else { return };
         let [a, b, c, d] = self.corners;
         let across = |from: Vec3, to: Vec3| {
-            let change = |kink: &Kink| (kink.twist(to) - kink.twist(from)).abs() / (kink.twist(to) + kink.twist(from)).abs();
+            let change =
+                |kink: &Kink| (kink.twist(to) - kink.twist(from)).abs() / (kink.twist(to) + kink.twist(from)).abs();
             integrand.kinks[kinks.clone()].iter().map(change).sum::<f64>()
         };
         let (ab, bc, cd, da) = (0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + d), 0.5 * (d + a));

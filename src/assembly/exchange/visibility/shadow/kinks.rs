@@ -53,15 +53,14 @@ pub fn find(&[a, b, c, d]: &[Vec3; 4], target: &[Vec3], edges: &[Edge], into: &m
     let sheaves: Vec<Sheaf> = edges.iter().copied().chain(sides_of(target)).map(through).collect();
     let away = (target[1] - target[0]).cross(target[2] - target[0]);
 
-    // The direction in which two edges meet, towards the target, and whether some other edge hides it everywhere.
-    let meeting = |i: usize, j: usize, k: usize| {
-        let along = sheaves[i].normals[k].cross(sheaves[j].normals[k]);
-        if along.dot(away) > 0.0 { -along } else { along }
-    };
+    // Two edges meet in a direction; that towards the target may be hidden by some other edge everywhere. Where it turns over, edges that are
+    // nearly parallel pass each other all along.
     let is_out_of_sight = |i: usize, j: usize| {
-        let ways: [Vec3; N_EYES] = std::array::from_fn(|k| meeting(i, j, k));
-        let outside = |other: &Sheaf| other.normals.iter().zip(&ways).all(|(normal, way)| normal.dot(*way) < 0.0);
-        sheaves.iter().enumerate().any(|(l, other)| l != i && l != j && outside(other))
+        let ways: [Vec3; N_EYES] = std::array::from_fn(|k| sheaves[i].normals[k].cross(sheaves[j].normals[k]));
+        let sign = -ways[0].dot(away).signum();
+        let is_steady = ways.iter().all(|way| sign * way.dot(away) < 0.0);
+        let outside = |other: &Sheaf| other.normals.iter().zip(&ways).all(|(n, way)| sign * n.dot(*way) < 0.0);
+        is_steady && sheaves.iter().enumerate().any(|(l, other)| l != i && l != j && outside(other))
     };
 
     // At least two of three are edges of obstacles.
