@@ -1,17 +1,11 @@
 //! Pieces covered with cells: triangles that end in singularities, quadrilaterals elsewhere.
 
-use super::cubature::{Cell, Nature};
+use super::cubature::Cell;
 use crate::geometry::Vec3;
 
 /// Covers a convex polygon, singular at these corners, with cells of a term.
-pub fn cover(
-    polygon: &[Vec3],
-    singular: &[usize],
-    term: usize,
-    nature: &impl Fn(&[Vec3; 4]) -> Nature,
-    into: &mut Vec<Cell>,
-) {
-    let mut add = |corners: [Vec3; 4]| into.push(Cell::new(corners, term, nature(&corners)));
+pub fn cover(polygon: &[Vec3], singular: &[usize], term: usize, into: &mut Vec<Cell>) {
+    let mut add = |corners: [Vec3; 4]| into.push(Cell::new(corners, term));
     let n = polygon.len();
     match singular {
         // A fan of quadrilaterals, or one of triangles about the one singularity.

@@ -23,6 +23,7 @@ mod cover;
 mod cubature;
 mod events;
 mod flux;
+mod integrand;
 mod kinks;
 mod nature;
 mod outline;
@@ -33,10 +34,11 @@ pub use bodies::Bodies;
 use crate::geometry::{Polygon, Vec3};
 use body::{Body, Lie, Plane};
 use cells::{Line, Pieces};
-use cover::cover;
 use cubature::Cell;
 use flux::{Edge, Scratch};
-use nature::{distance_squared, nature, singular_corners};
+use integrand::Integrand;
+use kinks::Kink;
+use nature::distance_squared;
 use outline::Outline;
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -79,6 +81,7 @@ pub struct Desk {
     pieces: Pieces,
     spare: Pieces,
     scratch: Scratch,
+    kinks: Vec<Kink>,
     is_front: Vec<bool>,
     faces: Vec<usize>,
     stands: [Vec<Vec3>; 2],
@@ -170,18 +173,13 @@ impl Desk {
             return Shadow::Clear;
         }
 
-        let Self { cells, terms, targets, active, scratch, .. } = self;
-        self.n_cells += cells.len();
-        let nature = |term: usize, corners: &[Vec3; 4]| {
-            let Term { target, edges, is_cut, .. } = &terms[term];
-            nature(corners, &targets[target.clone()], &active[edges.clone()], *is_cut)
-        };
+        self.n_cells += self.cells.len();
+        self.kinks.clear();
+        let Self { cells, terms, targets, active, scratch, kinks, .. } = self;
         let normal = stage.floor.normal;
-        let sum = cubature::integrate(cells, normal, tolerance / PI, &nature, |term, x| {
-            let Term { sign, target, edges, .. } = &terms[term];
-            sign * flux::hidden(x, normal, &targets[target.clone()], &active[edges.clone()], scratch)
-        });
-        self.n_points += sum.n_points;
+        let mut integrand = Integrand { normal, terms, targets, active, scratch, kinks, n_points: 0 };
+        let sum = cubature::integrate(cells, tolerance / PI, &mut integrand);
+        self.n_points += integrand.n_points;
         Shadow::Partial { blocked: PI * sum.value.max(0.0), error: PI * sum.error }
     }
 }

@@ -1,8 +1,6 @@
 //! Where the integrand of a term is smooth, and how far from its singularities.
 
-use super::cubature::Nature;
 use super::flux::Edge;
-use super::kinks::is_kinked;
 use crate::geometry::Vec3;
 
 /// A corner nearer to a singularity than this, relative to the extent of its cell, is one.
@@ -11,21 +9,14 @@ const AT: f64 = 1e-8;
 /// About an apex, functions of direction are smooth at least as far as this, in units of half the side across.
 const TURN: f64 = 1.5;
 
-/// What the integrand of a term is like on a cell with these corners.
+/// How far a term's singularities are from the centre of a cell with these corners, in units of the cell's radius.
 ///
 /// Where the cell is a triangle whose two equal corners, first and last, are at a singularity, it is smooth in distance and direction from
 /// there.
-pub fn nature(corners: &[Vec3; 4], target: &[Vec3], edges: &[Edge], is_cut: bool) -> Nature {
+pub fn reach(corners: &[Vec3; 4], normal: Vec3, target: &[Vec3], edges: &[Edge]) -> f64 {
     let centre = corners.iter().copied().sum::<Vec3>() / corners.len() as f64;
-    if !is_cut {
-        return Nature::Kinked;
-    }
-    if edges.len() > 1 && is_kinked(*corners, target, edges) {
-        return Nature::Kinked;
-    }
     let square = corners.iter().map(|v| v.distance_squared(centre)).fold(0.0, f64::max);
     let apex = (corners[0] == corners[3]).then_some(corners[0]);
-    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
     let (mut nearest, mut limit) = (f64::INFINITY, f64::INFINITY);
     let mut add = |distance: &dyn Fn(Vec3) -> f64| match apex {
         Some(apex) if distance(apex) <= AT * AT * square => limit = limit.min(TURN),
@@ -59,7 +50,7 @@ pub fn nature(corners: &[Vec3; 4], target: &[Vec3], edges: &[Edge], is_cut: bool
             }
         }
     }
-    Nature::Smooth { reach: (nearest / square).sqrt().min(limit) }
+    (nearest / square).sqrt().min(limit)
 }
 
 /// The corners of a piece at which the integrand of a term is singular: where edges or the target touch its plane.

@@ -5,7 +5,7 @@ use super::cells::{Line, Pieces, grain};
 use super::cover::cover;
 use super::events;
 use super::flux::Edge;
-use super::nature::{nature, singular_corners};
+use super::nature::singular_corners;
 use super::{Desk, Term};
 use crate::geometry::Vec3;
 use std::ops::Range;
@@ -132,11 +132,10 @@ impl Desk {
             std::mem::swap(pieces, spare);
         }
         let is_cut = lines.len() <= MOST_LINES;
-        let nature = |corners: &[Vec3; 4]| nature(corners, target, edges, is_cut);
         for piece in pieces.iter() {
             singular.clear();
             singular.extend(singular_corners(piece, normal, target, edges));
-            cover(piece, singular, number, &nature, cells);
+            cover(piece, singular, number, cells);
         }
         terms[number].is_cut = is_cut;
     }
