@@ -14,13 +14,9 @@ pub fn find(part: &[Vec3], target: &[Vec3], edges: &[Edge], points: &mut Vec<Vec
 
     // Where an obstacle's edge passes a corner of the target.
     for (e, edge) in edges.iter().enumerate() {
-        for (k, &corner) in target.iter().enumerate() {
+        for &corner in target {
             let others = edges.iter().enumerate().filter(|(other, _)| *other != e).map(|(_, edge)| *edge);
-            // An edge that ends on a side passes all of that side at once.
-            let sides = [target[(k + 1) % target.len()], target[(k + target.len() - 1) % target.len()]];
-            let is_on_side = |end: &Vec3| sides.iter().any(|side| is_between(*end, corner, *side));
-            let ends = [edge.from, edge.to].into_iter().filter(is_on_side);
-            add(part, normal, size, edge, (corner, ends), others, lines);
+            add(part, normal, size, edge, corner, others, lines);
         }
     }
     // Where an edge passes all of a side at once, or of another edge, because both lie in one plane.
@@ -52,14 +48,7 @@ pub fn find(part: &[Vec3], target: &[Vec3], edges: &[Edge], points: &mut Vec<Vec
         let constraints = || sides_of(target).chain(edges.iter().copied().filter(|edge| apart(edge)));
         for (k, edge) in constraints().enumerate() {
             let others = constraints().enumerate().filter(|(other, _)| *other != k).map(|(_, edge)| edge);
-            // So does an edge pass all of another that ends on it.
-            let ends = edges.iter().filter_map(|other| match point {
-                p if p == other.from => Some(other.to),
-                p if p == other.to => Some(other.from),
-                _ => None,
-            });
-            let ends = ends.filter(|end| is_between(*end, edge.from, edge.to));
-            add(part, normal, size, &edge, (point, ends), others, lines);
+            add(part, normal, size, &edge, point, others, lines);
         }
     }
 }
@@ -75,31 +64,21 @@ pub fn sides_of(target: &[Vec3]) -> impl Iterator<Item = Edge> + Clone + '_ {
 /// Owner of the sides of the target.
 const TARGET: usize = usize::MAX;
 
-/// True if a point lies on a segment, to within some ulp of the coordinates.
-fn is_between(point: Vec3, from: Vec3, to: Vec3) -> bool {
-    let (side, offset) = (to - from, point - from);
-    let along = (offset.dot(side) / side.length_squared()).clamp(0.0, 1.0);
-    let coordinates = point.abs().max_element() + from.abs().max_element() + to.abs().max_element();
-    (offset - along * side).length_squared() <= (16.0 * f64::EPSILON * coordinates).powi(2)
-}
-
-/// Adds the line on which an edge passes a point, unless what it passes is out of sight there: the point, or a segment from it to one of
-/// `ends`, outside one of the other edges all along.
+/// Adds the line on which an edge passes a point, unless the point is out of sight there: outside one of the other edges all along.
 fn add(
     part: &[Vec3],
     normal: Vec3,
     size: f64,
     edge: &Edge,
-    (point, mut ends): (Vec3, impl Iterator<Item = Vec3>),
-    others: impl Iterator<Item = Edge> + Clone,
+    point: Vec3,
+    mut others: impl Iterator<Item = Edge>,
     lines: &mut Vec<(Line, f64)>,
 ) {
     let gradient = edge.height_of(point);
     let line = Line { normal: gradient, point: edge.from };
     let slope = (gradient - normal.dot(gradient) * normal).length();
     let Some(eyes) = line.chord(part, slope, size) else { return };
-    let is_out_of_sight = |points: &[Vec3]| others.clone().any(|other| other.is_short_of(&eyes, points));
-    if is_out_of_sight(&[point]) && ends.all(|end| is_out_of_sight(&[point, end])) {
+    if others.any(|other| other.is_short_of(&eyes, &[point])) {
         return;
     }
     lines.push((line, slope));
