@@ -10,7 +10,7 @@
 //! Nothing is taken on trust: a candidate that fails for one facet is left out.
 
 use crate::basis::Bundles;
-use crate::geometry::{Affine3, Polygon, Vec3};
+use crate::geometry::{Affine3, DisjointSets, Polygon, Vec3};
 use crate::scene::Scene;
 use std::collections::HashMap;
 
@@ -43,7 +43,7 @@ impl Orbits {
                 patches.push((2 * surface + patch.side as usize, &patch.polygon));
             }
         }
-        let mut parent: Vec<usize> = (0..chosen.len()).collect();
+        let mut alike = DisjointSets::new(chosen.len());
         let mut symmetries = Vec::new();
         for candidate in candidates {
             let Some(images) = permutation(&facets, candidate).and_then(|_| permutation(&patches, candidate)) else {
@@ -51,18 +51,17 @@ impl Orbits {
             };
             let mut symmetry = vec![None; bundles.n_bundles()];
             for (k, image) in images.into_iter().enumerate() {
-                let (a, b) = (root(&mut parent, k), root(&mut parent, image));
-                parent[a.max(b)] = a.min(b);
+                alike.join(k, image);
                 symmetry[chosen[k]] = Some(chosen[image]);
             }
             symmetries.push(symmetry);
         }
 
-        // Number the roots in their order; a root comes before all others of its orbit.
+        // Number the orbits in the order of their least members.
         let mut members: Vec<Vec<usize>> = Vec::new();
         let mut orbit_of = vec![None; bundles.n_bundles()];
         for (k, &bundle) in chosen.iter().enumerate() {
-            let first = root(&mut parent, k);
+            let first = alike.least(k);
             let orbit = orbit_of[chosen[first]].unwrap_or(members.len());
             if orbit == members.len() {
                 members.push(Vec::new());
@@ -87,18 +86,17 @@ impl Orbits {
     /// exchange as much with it. Each with their number.
     pub fn seen_from(&self, bundle: usize, orbit: usize) -> Vec<(usize, usize)> {
         let members = &self.members[orbit];
-        let mut parent: Vec<usize> = (0..members.len()).collect();
+        let mut alike = DisjointSets::new(members.len());
         for symmetry in self.symmetries.iter().filter(|symmetry| symmetry[bundle] == Some(bundle)) {
             for (k, member) in members.iter().enumerate() {
                 let Some(image) = symmetry[*member].and_then(|image| members.binary_search(&image).ok()) else {
                     continue;
                 };
-                let (a, b) = (root(&mut parent, k), root(&mut parent, image));
-                parent[a.max(b)] = a.min(b);
+                alike.join(k, image);
             }
         }
         let mut count = vec![0; members.len()];
-        (0..members.len()).for_each(|k| count[root(&mut parent, k)] += 1);
+        (0..members.len()).for_each(|k| count[alike.least(k)] += 1);
         (0..members.len()).filter(|k| count[*k] > 0).map(|k| (members[k], count[k])).collect()
     }
 
@@ -106,14 +104,6 @@ impl Orbits {
     pub fn orbit_of(&self, bundle: usize) -> Option<usize> {
         self.orbit_of[bundle]
     }
-}
-
-fn root(parent: &mut [usize], mut k: usize) -> usize {
-    while parent[k] != k {
-        parent[k] = parent[parent[k]];
-        k = parent[k];
-    }
-    k
 }
 
 /// The image of every polygon among polygons of the same kind; `None` if one has no image.

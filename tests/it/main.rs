@@ -5,6 +5,7 @@
 
 mod check;
 mod cli;
+mod closure;
 mod compare;
 mod defects;
 mod enclosure;
