@@ -55,10 +55,14 @@ Examples:
 
   Of what differs from band to band there is a file a band; in Radiance's format, one with a component a band.";
 
+/// A method of every kind.
+const STUDY_SOLVERS: &str = "lu,gth,cholesky,neumann,gauss-seidel,southwell,chebyshev,cg,gmres";
+
 const STUDY_EXAMPLES: &str = "\
 Examples:
   etendue study cornell-box                         writes out/cornell-box/report.html and its files
-  etendue study room.xml --patch-size 0.1 -o room   a scene file, cut as finely as you say";
+  etendue study room.xml --patch-size 0.1 -o room   a scene file, cut as finely as you say
+  etendue study two-rooms --solvers all             every method there is";
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
@@ -132,6 +136,11 @@ pub struct Study {
     /// Folder to write, whole or not at all; an older report there is replaced [default: out/SCENE]
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
+
+    /// Methods to compare, or all; what one refuses is reported
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = STUDY_SOLVERS)]
+    #[arg(value_parser = clap::builder::PossibleValuesParser::new([solver_names(), vec!["all"]].concat()))]
+    pub solvers: Vec<String>,
 
     /// Stop iterative solvers at this relative residual
     #[arg(long, value_name = "RESIDUAL", default_value = "1e-12", value_parser = positive, allow_negative_numbers = true)]

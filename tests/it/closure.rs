@@ -6,7 +6,6 @@ use etendue::assembly::{Exchange, Occlusion, System, assemble};
 use etendue::basis::{Bundles, Resolution};
 use etendue::gallery;
 use etendue::geometry::Polygon;
-use etendue::linalg::LinearOperator;
 use etendue::scattering::Lambert;
 use etendue::scene::{Scene, SceneDescription, Surface};
 use std::f64::consts::PI;
