@@ -75,6 +75,11 @@ pub fn find(&[a, b, c, d]: &[Vec3; 4], target: &[Vec3], edges: &[Edge], into: &m
                 if !is_apart || twist.iter().all(|t| t * twist[0] > 0.0) {
                     continue;
                 }
+                // In one plane, two edges pass each other or have a corner in common: cells end at such lines.
+                let (one, two, three) = (&edges[i], &edges[j], &third.edge);
+                if one.is_coplanar(two) || one.is_coplanar(three) || two.is_coplanar(three) {
+                    continue;
+                }
                 if !*meets_in_sight.get_or_insert_with(|| !is_out_of_sight(i, j)) {
                     break;
                 }
