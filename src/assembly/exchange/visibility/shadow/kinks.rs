@@ -68,8 +68,7 @@ pub fn find(&[a, b, c, d]: &[Vec3; 4], target: &[Vec3], edges: &[Edge], into: &m
         for j in (i + 1..edges.len()).filter(|j| edges[*j].owner != edges[i].owner) {
             let ways: [Vec3; N_EYES] = std::array::from_fn(|k| sheaves[i].normals[k].cross(sheaves[j].normals[k]));
             let mut meets_in_sight = None;
-            for l in j + 1..sheaves.len() {
-                let third = &sheaves[l];
+            for (l, third) in sheaves.iter().enumerate().skip(j + 1) {
                 let is_apart = third.edge.owner != edges[i].owner && third.edge.owner != edges[j].owner;
                 let twist: [f64; N_EYES] = std::array::from_fn(|k| third.normals[k].dot(ways[k]));
                 if !is_apart || twist.iter().all(|t| t * twist[0] > 0.0) {
