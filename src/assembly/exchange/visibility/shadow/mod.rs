@@ -36,7 +36,7 @@ mod union;
 pub use bodies::Bodies;
 
 use crate::geometry::{Polygon, Vec3};
-use body::{Body, Lie, Plane};
+use body::{Lie, Plane};
 use cells::{Line, Pieces};
 use cubature::Cell;
 use flux::{Edge, Scratch};
