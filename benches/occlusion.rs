@@ -39,7 +39,7 @@ fn main() {
     );
     for (n, tolerance, theirs, their_closure) in VIEW3D {
         let scene = gallery::floating_block(n).expect("a scene");
-        for ours in [1e-6, 3e-7, 1e-7] {
+        for ours in [1e-5, 1e-6, 1e-7] {
             let (n_facets, seconds, closure) = run(&scene, WHOLE, Occlusion::Exact { tolerance: ours });
             let theirs_closed = their_closure.map_or(String::new(), |c| format!(" closure {c:.0e}"));
             let view3d = format!("{theirs} s at {tolerance:.0e}{theirs_closed}");

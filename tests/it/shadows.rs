@@ -18,6 +18,11 @@ const TOLERANCE: f64 = 1e-7;
 /// No edge is longer: every polygon is one patch.
 const WHOLE: f64 = 1e12;
 
+/// So many trials where nobody asks for all of them with `ETENDUE_LARGE=1`.
+fn n_trials(few: usize, many: usize) -> usize {
+    if std::env::var("ETENDUE_LARGE").is_ok_and(|v| v == "1") { many } else { few }
+}
+
 fn exchange(scene: &Scene, patch_size: f64, tolerance: f64) -> System {
     let bundles = Bundles::new(scene, Resolution { patch_size, n_directions: 1 }).unwrap();
     let occlusion = Occlusion::Exact { tolerance };
@@ -85,6 +90,7 @@ pub fn closed_cornell_box() -> Scene {
 fn closed_scenes_close_before_any_repair() {
     let scenes = [
         (gallery::corner_box(), 0.5, 1e-7, 1e-6),
+        (gallery::corner_box(), 0.5, 1e-10, 1e-9),
         (gallery::corner_box(), 0.25, 1e-7, 1e-6),
         (gallery::corner_box(), 0.25, 1e-11, 1e-9),
         (gallery::two_rooms(), 1.0, 1e-7, 1e-6),
@@ -173,14 +179,43 @@ fn obstacles(kind: usize, stream: &mut Stream) -> Vec<Polygon> {
         // A cube open at one side, and two that may overlap.
         3 => turned(&CUBE, &CUBE_FACES[1..], 0.15, centre(stream), stream),
         4 => [1, 1].iter().flat_map(|kind| obstacles(*kind, stream)).collect(),
-        _ => (0..3).flat_map(|_| obstacles(0, stream)).collect(),
+        5 => (0..3).flat_map(|_| obstacles(0, stream)).collect(),
+        // Two bricks side by side or one behind the other: edges of both in one plane.
+        6 => (0..2).flat_map(|_| brick(stream)).collect(),
+        _ => ball(10, 0.1 + 0.1 * stream.uniform(), centre(stream)),
     }
 }
 
-const N_KINDS: usize = 6;
+/// A cube along the axes, its corners on a grid.
+fn brick(stream: &mut Stream) -> Vec<Polygon> {
+    let mut grid = |n: f64| (n * stream.uniform()).floor() * 0.125;
+    let centre = Vec3::new(grid(5.0) - 0.25, grid(5.0) - 0.25, 0.375 + grid(3.0));
+    let corner = |k: usize| centre + 0.0625 * Vec3::from_array(CUBE[k]);
+    CUBE_FACES.iter().map(|face| Polygon::new(face.iter().map(|k| corner(*k)).collect()).unwrap()).collect()
+}
+
+/// A sphere in n sectors and n/2 rings.
+fn ball(n: usize, radius: f64, centre: Vec3) -> Vec<Polygon> {
+    let n_rings = n / 2;
+    let at = |ring: usize, sector: usize| {
+        let (polar, azimuth) = (PI * ring as f64 / n_rings as f64, 2.0 * PI * (sector % n) as f64 / n as f64);
+        // Poles lie on the axis exactly.
+        let sine = if ring == 0 || ring == n_rings { 0.0 } else { polar.sin() };
+        centre + radius * Vec3::new(sine * azimuth.cos(), sine * azimuth.sin(), polar.cos())
+    };
+    let facet = |ring: usize, sector: usize| {
+        let [a, b] = [sector, sector + 1].map(|sector| at(ring + 1, sector));
+        let [d, c] = [sector, sector + 1].map(|sector| at(ring, sector));
+        let corners = if ring == 0 { vec![a, b, c] } else { vec![a, b, c, d] };
+        Polygon::new(if ring + 1 == n_rings { vec![b, c, d] } else { corners }).unwrap()
+    };
+    (0..n_rings).flat_map(|ring| (0..n).map(move |sector| facet(ring, sector))).collect()
+}
+
+const N_KINDS: usize = 8;
 
 /// Whether a kind is one convex body, so that nothing is left to refinement and any tolerance is reached.
-const IS_ALONE: [bool; N_KINDS] = [true, true, false, true, false, false];
+const IS_ALONE: [bool; N_KINDS] = [true, true, false, true, false, false, false, true];
 
 /// Σ cosθ cosθ' / r² V over random segments, as T and its standard error.
 fn by_rays(pair: &[Polygon; 2], all: &[Polygon], n: usize, stream: &mut Stream) -> (f64, f64) {
@@ -203,39 +238,40 @@ fn by_rays(pair: &[Polygon; 2], all: &[Polygon], n: usize, stream: &mut Stream) 
 
 #[test]
 fn shadows_are_those_that_rays_find() {
-    // 240 comparisons at a total significance of 1e-6: 4e-9 each, 5.9 standard errors of a normal mean.
-    const LIMIT: f64 = 5.9;
+    // At most 320 comparisons at a total significance of 1e-6: 3e-9 each, 6.0 standard errors of a normal mean.
+    const LIMIT: f64 = 6.0;
     let mut stream = Stream::new(0x7368_6164, 0, 0);
-    let (mut n_partial, n_trials) = (0, 40);
+    let (mut n_partial, n_trials) = (0, n_trials(8, 40));
     for kind in 0..N_KINDS {
         for trial in 0..n_trials {
             let pair = across(&mut stream);
             let mut all = pair.to_vec();
             all.extend(obstacles(kind, &mut stream));
-            let system = exchange(&scene_of(&all, false), WHOLE, 1e-6);
+            let system = exchange(&scene_of(&all, false), WHOLE, 1e-5);
             let found = entry(&system, 0, 1);
             let (expected, error) = by_rays(&pair, &all, 20_000, &mut stream);
             n_partial += usize::from(system.report().n_integrated > 0);
             // What the tolerance leaves open is on top.
-            let allowed = LIMIT * error + 1e-6 * PI * pair[0].area().min(pair[1].area());
+            let allowed = LIMIT * error + estimate(&system, 0, 1) + 1e-5 * PI * pair[0].area().min(pair[1].area());
             assert!((found - expected).abs() <= allowed, "kind {kind}, {trial}: {found} for {expected} ± {error}");
         }
     }
     assert!(n_partial > N_KINDS * n_trials * 3 / 4, "{n_partial}");
 }
 
-/// The estimate contains what a tolerance a thousand times smaller finds, and is within the tolerance where one body hides.
+/// The estimate contains what a far smaller tolerance finds, and is within the tolerance where one body hides.
 #[test]
 fn estimates_contain_the_truth() {
     let mut stream = Stream::new(0x686f_6e65, 0, 0);
-    let (mut n_pairs, mut n_outside) = (0, 0);
+    let mut n_pairs = 0;
     for (kind, is_alone) in IS_ALONE.into_iter().enumerate() {
-        for trial in 0..20 {
+        for trial in 0..n_trials(10, 40) {
             let pair = across(&mut stream);
             let mut all = pair.to_vec();
             all.extend(obstacles(kind, &mut stream));
             let scene = scene_of(&all, false);
-            let (rough, fine) = (exchange(&scene, WHOLE, 1e-4), exchange(&scene, WHOLE, 1e-7));
+            let finer = if is_alone { 1e-9 } else { 1e-6 };
+            let (rough, fine) = (exchange(&scene, WHOLE, 1e-4), exchange(&scene, WHOLE, finer));
             if rough.report().n_integrated != 1 {
                 continue;
             }
@@ -248,12 +284,10 @@ fn estimates_contain_the_truth() {
             let change = (entry(&rough, 0, 1) - entry(&fine, 0, 1)).abs();
             let estimates = estimate(&rough, 0, 1) + estimate(&fine, 0, 1) + 1e-12 * mu;
             n_pairs += 1;
-            n_outside += usize::from(change > estimates);
-            assert!(change <= 4.0 * estimates, "kind {kind}, {trial}: {change:e} for {estimates:e}");
+            assert!(change <= estimates, "kind {kind}, {trial}: {change:e} for {estimates:e}");
         }
     }
-    // Estimates are no bounds: one in a hundred may fall short, none by far.
-    assert!(n_pairs > 50 && n_outside * 100 <= n_pairs, "{n_outside} of {n_pairs}");
+    assert!(n_pairs > 5 * N_KINDS, "{n_pairs}");
 }
 
 /// Turned, scaled and numbered anew: the same exchange to the tolerance, or to what the estimates say where it is not reached.
@@ -262,11 +296,11 @@ fn shadows_do_not_depend_on_where_and_in_which_order() {
     let turn = Mat3::from_axis_angle(Vec3::new(0.36, 0.48, 0.8), 1.2);
     let mut stream = Stream::new(0x7475_726e, 0, 0);
     for (kind, is_alone) in IS_ALONE.into_iter().enumerate() {
-        for trial in 0..5 {
+        for trial in 0..n_trials(2, 10) {
             let pair = across(&mut stream);
             let mut all = pair.to_vec();
             all.extend(obstacles(kind, &mut stream));
-            let tolerance = if is_alone { 1e-9 } else { 1e-6 };
+            let tolerance = if is_alone { 1e-9 } else { 1e-5 };
             let system = exchange(&scene_of(&all, false), WHOLE, tolerance);
             let (reference, stated) = (entry(&system, 0, 1), estimate(&system, 0, 1));
             let map = |p: &Polygon| {
@@ -290,7 +324,7 @@ fn shadows_do_not_depend_on_where_and_in_which_order() {
 fn shadows_add_up_over_the_parts_of_a_patch() {
     let mut stream = Stream::new(0x7061_7274, 0, 0);
     for (kind, is_alone) in IS_ALONE.into_iter().enumerate() {
-        let tolerance = if is_alone { 1e-9 } else { 1e-6 };
+        let tolerance = if is_alone { 1e-9 } else { 1e-5 };
         let pair = across(&mut stream);
         let mut all = pair.to_vec();
         all.extend(obstacles(kind, &mut stream));

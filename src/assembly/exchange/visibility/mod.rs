@@ -72,6 +72,12 @@ pub fn between(
     key: u64,
 ) -> Visibility {
     let occluders = &obstacles.tracer;
+    // What one solid does needs no looking at its facets.
+    if let (Occlusion::Exact { tolerance }, Some(candidates)) = (occlusion, candidates)
+        && obstacles.bodies.are_one_solid(candidates)
+    {
+        return integrated(obstacles, desk, candidates, [a, b], tolerance);
+    }
     let (one, other) = ((a.polygon, a.facet), (b.polygon, b.facet));
     let shaft = match candidates {
         None => Shaft::between(occluders, one, other),
@@ -83,15 +89,17 @@ pub fn between(
         Shaft::Undecided(handles) => handles,
     };
     match occlusion {
-        Occlusion::Exact { tolerance } => {
-            let tolerance = tolerance * a.etendue.min(b.etendue);
-            match desk.shadow(&obstacles.bodies, a.polygon, b.polygon, &handles, tolerance) {
-                Shadow::Clear => Visibility::Full,
-                Shadow::Total => Visibility::None,
-                Shadow::Partial { blocked, error } => Visibility::Integrated { blocked, error },
-            }
-        }
+        Occlusion::Exact { tolerance } => integrated(obstacles, desk, &handles, [a, b], tolerance),
         Occlusion::Sampled { rays, .. } => sampled(occluders, &handles, [a, b], rays, key),
+    }
+}
+
+fn integrated(obstacles: &Obstacles, desk: &mut Desk, handles: &[u32], [a, b]: [End; 2], tolerance: f64) -> Visibility {
+    let tolerance = tolerance * a.etendue.min(b.etendue);
+    match desk.shadow(&obstacles.bodies, a.polygon, b.polygon, handles, tolerance) {
+        Shadow::Clear => Visibility::Full,
+        Shadow::Total => Visibility::None,
+        Shadow::Partial { blocked, error } => Visibility::Integrated { blocked, error },
     }
 }
 

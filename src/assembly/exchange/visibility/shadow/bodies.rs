@@ -5,7 +5,7 @@ use crate::geometry::{DisjointSets, Polygon, Tracer, Vec3, height};
 use std::collections::HashMap;
 
 /// Solids of more facets are left in pieces: proving one convex costs facets times corners.
-const LARGEST: usize = 4096;
+const LARGEST: usize = 16_384;
 
 /// All obstacles of a scene: every facet belongs to one body, and is one by itself.
 pub struct Bodies {
@@ -52,6 +52,13 @@ impl Bodies {
     /// The body of this polygon alone.
     pub fn facet_of(&self, handle: u32) -> u32 {
         self.facet_of[handle as usize]
+    }
+
+    /// True if all of these polygons are part of one body that has an inside.
+    pub fn are_one_solid(&self, handles: &[u32]) -> bool {
+        let Some(&first) = handles.first() else { return false };
+        let body = self.body_of(first);
+        self.get(body).faces.len() > 2 && handles.iter().all(|handle| self.body_of(*handle) == body)
     }
 
     /// The face of its body that this polygon is part of.

@@ -22,11 +22,8 @@ pub fn find(part: &[Vec3], target: &[Vec3], edges: &[Edge], points: &mut Vec<Vec
     // Where an edge passes all of a side at once, or of another edge, because both lie in one plane.
     for (e, edge) in edges.iter().enumerate() {
         for other in edges[e + 1..].iter().copied().filter(|other| other.owner != edge.owner).chain(sides_of(target)) {
-            let reach = [other.from, other.to].map(|y| y.distance_squared(edge.from));
-            let far = if reach[0] > reach[1] { other.from } else { other.to };
-            let (gradient, along) = (edge.height_of(far), other.to - other.from);
-            if gradient.dot(along).abs() <= COPLANAR * gradient.length() * along.length() {
-                add(part, normal, size, edge, far, std::iter::empty(), lines);
+            if edge.is_coplanar(&other) {
+                add(part, normal, size, edge, edge.far_end(&other), std::iter::empty(), lines);
             }
         }
     }
@@ -52,9 +49,6 @@ pub fn find(part: &[Vec3], target: &[Vec3], edges: &[Edge], points: &mut Vec<Vec
         }
     }
 }
-
-/// Sine of an angle between an edge and a plane in which it is to lie.
-const COPLANAR: f64 = 1e-9;
 
 /// The sides of the target as edges that have it on their hidden side.
 pub fn sides_of(target: &[Vec3]) -> impl Iterator<Item = Edge> + Clone + '_ {

@@ -13,6 +13,9 @@ use std::f64::consts::TAU;
 /// Rounding of a height over a plane through an edge and a point, relative to the lengths in it: a few ulp.
 const FLAT: f64 = 4e-15;
 
+/// Sine of an angle between an edge and a plane in which it is to lie.
+const COPLANAR: f64 = 1e-9;
+
 /// An edge of an obstacle's outline. A point y is on its hidden side, seen from x, where (from − x) × (to − x) · (y − x) > 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Edge {
@@ -31,6 +34,18 @@ impl Edge {
     /// Height of y over the plane through x and this edge as a linear function of x: the normal of it, for x relative to `from`.
     pub fn height_of(&self, y: Vec3) -> Vec3 {
         (y - self.from).cross(self.to - self.from)
+    }
+
+    /// That end of another edge which is further from this one's start.
+    pub fn far_end(&self, other: &Self) -> Vec3 {
+        let is_start = other.from.distance_squared(self.from) > other.to.distance_squared(self.from);
+        if is_start { other.from } else { other.to }
+    }
+
+    /// True if both lie in one plane.
+    pub fn is_coplanar(&self, other: &Self) -> bool {
+        let (normal, along) = (self.height_of(self.far_end(other)), other.to - other.from);
+        normal.dot(along).abs() <= COPLANAR * normal.length() * along.length()
     }
 
     /// On which side these points lie, seen from anywhere in the hull of `eyes`: above is hidden.

@@ -18,6 +18,9 @@ pub enum Nature {
     Rough,
 }
 
+/// A cell of more kinks is left to refinement.
+const MOST_KINKS: usize = 3;
+
 /// The terms of a sum over unions, each a function on the patch.
 pub struct Integrand<'a> {
     /// Of the patch.
@@ -49,6 +52,10 @@ impl Integrand<'_> {
         let (target, edges) = (&self.targets[target.clone()], &self.active[edges.clone()]);
         let first = self.kinks.len();
         kinks::find(corners, target, edges, self.kinks);
+        if self.kinks.len() > first + MOST_KINKS {
+            self.kinks.truncate(first);
+            return Nature::Rough;
+        }
         if self.kinks.len() > first {
             return Nature::Kinked(first..self.kinks.len());
         }

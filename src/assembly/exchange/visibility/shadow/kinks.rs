@@ -68,11 +68,15 @@ pub fn find(&[a, b, c, d]: &[Vec3; 4], target: &[Vec3], edges: &[Edge], into: &m
         for j in (i + 1..edges.len()).filter(|j| edges[*j].owner != edges[i].owner) {
             let ways: [Vec3; N_EYES] = std::array::from_fn(|k| sheaves[i].normals[k].cross(sheaves[j].normals[k]));
             let mut meets_in_sight = None;
-            for l in j + 1..sheaves.len() {
-                let third = &sheaves[l];
+            for (l, third) in sheaves.iter().enumerate().skip(j + 1) {
                 let is_apart = third.edge.owner != edges[i].owner && third.edge.owner != edges[j].owner;
                 let twist: [f64; N_EYES] = std::array::from_fn(|k| third.normals[k].dot(ways[k]));
                 if !is_apart || twist.iter().all(|t| t * twist[0] > 0.0) {
+                    continue;
+                }
+                // In one plane, two edges pass each other or have a corner in common: cells end at such lines.
+                let (one, two, three) = (&edges[i], &edges[j], &third.edge);
+                if one.is_coplanar(two) || one.is_coplanar(three) || two.is_coplanar(three) {
                     continue;
                 }
                 if !*meets_in_sight.get_or_insert_with(|| !is_out_of_sight(i, j)) {

@@ -9,10 +9,14 @@
 //! the sum, less what is hidden twice, and so on.
 //!
 //! On a part of A that lies on one side of every face the silhouette does not change. There every plane's height over a corner of B is
-//! linear in x, so whether an edge takes part at all is settled by corners alone, and the integrand bends on straight lines only:
+//! linear in x, so whether an edge takes part at all is settled by corners alone, and the integrand bends on straight lines:
 //! where an edge passes a corner of B or of another body, or a corner of a body a side of B. The part is cut along them; in each
-//! cell the integrand is analytic and Gauss rules converge geometrically. The one exception, three edges of different outlines in one
-//! line of sight, is left to refinement.
+//! cell the integrand is analytic and Gauss rules converge geometrically. Three edges of different outlines in one line of sight bend it on
+//! conics; rules are then laid piece by piece on lines that the conics cross. It is singular only in points of A where edges or B touch its
+//! plane, in which cells end.
+//!
+//! A body that has a great many planes across A would cut it into too many parts. Its front faces hide together what it does, and each has one
+//! plane: they are looked at one by one.
 //!
 //! The unoccluded exchange is not integrated here, so its singularities at touching edges do not matter.
 

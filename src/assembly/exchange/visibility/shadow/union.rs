@@ -11,7 +11,7 @@ use crate::geometry::Vec3;
 use std::ops::Range;
 
 /// More lines than this are left to refinement.
-const MOST_LINES: usize = 24;
+const MOST_LINES: usize = 64;
 
 impl Desk {
     /// Adds sign · F(target ∩ hidden sides of the active edges ∩ (what the first n outlines hide)): the union of sets is the sum of each
