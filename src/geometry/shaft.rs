@@ -46,6 +46,10 @@ struct Hull<'a> {
     planes: [u32; 2],
     low: Vec3,
     high: Vec3,
+    /// From the middle of a to that of b.
+    axis: Vec3,
+    /// No point of the hull is further from the axis, rounding included.
+    radius: f64,
 }
 
 impl<'a> Hull<'a> {
@@ -53,7 +57,10 @@ impl<'a> Hull<'a> {
         let corners = || a.vertices().iter().chain(b.vertices());
         let low = corners().fold(Vec3::INFINITY, |low, v| low.min(*v));
         let high = corners().fold(Vec3::NEG_INFINITY, |high, v| high.max(*v));
-        Self { a, b, planes: [tracer.plane_number(a_id), tracer.plane_number(b_id)], low, high }
+        let planes = [a_id, b_id].map(|id| tracer.plane_number(id));
+        let widths = [a, b].map(|p| p.vertices().iter().map(|v| v.distance_squared(p.centroid())).fold(0.0, f64::max));
+        let radius = widths[0].max(widths[1]).sqrt() + rounding(low, high);
+        Self { a, b, planes, low, high, axis: b.centroid() - a.centroid(), radius }
     }
 
     fn corners(&self) -> impl Iterator<Item = &Vec3> {
@@ -72,8 +79,18 @@ impl<'a> Hull<'a> {
         if low.cmpgt(self.high).any() || high.cmplt(self.low).any() {
             return false;
         }
+        // Further from the line between the middles than both are wide.
+        let (middle, reach) = (0.5 * (low + high), 0.5 * low.distance(high) + self.radius);
+        let offset = middle - self.a.centroid();
+        let beyond = offset - (offset.dot(self.axis) / self.axis.length_squared()).clamp(0.0, 1.0) * self.axis;
+        if beyond.length_squared() > reach * reach {
+            return false;
+        }
         // Behind either polygon.
-        let behind = |plane: &Polygon| occluder.iter().all(|v| height(plane.normal(), plane.centroid(), *v) <= 0.0);
+        let rounding = rounding(low.min(self.low), high.max(self.high));
+        let behind = |plane: &Polygon| {
+            occluder.iter().all(|v| height_above(plane.normal(), plane.centroid(), *v, rounding) <= 0.0)
+        };
         if behind(self.a) || behind(self.b) {
             return false;
         }
@@ -81,7 +98,7 @@ impl<'a> Hull<'a> {
         let normal = tracer.normal_of(handle);
         let (mut above, mut below) = (false, false);
         self.corners().any(|v| {
-            let height = height(normal, occluder[0], *v);
+            let height = height_above(normal, occluder[0], *v, rounding);
             above |= height > 0.0;
             below |= height < 0.0;
             above && below
@@ -90,9 +107,9 @@ impl<'a> Hull<'a> {
 
     fn classify(&self, tracer: &Tracer, mut inside: Vec<u32>) -> Shaft {
         if !inside.is_empty() {
-            let sides = side_planes(self.a, self.b);
+            let sides = side_planes(self.a, self.b, rounding(self.low, self.high));
             let outside = |occluder: &[Vec3], (normal, point): &(Vec3, Vec3)| {
-                occluder.iter().all(|v| height(*normal, *point, *v) >= 0.0)
+                occluder.iter().all(|v| normal.dot(*v - *point) >= 0.0 || height(*normal, *point, *v) >= 0.0)
             };
             inside.retain(|&handle| !sides.iter().any(|plane| outside(tracer.corners_of(handle), plane)));
         }
@@ -110,32 +127,84 @@ impl<'a> Hull<'a> {
             }
             plane.clear();
             plane.extend(inside[k..].iter().filter(same).map(|handle| tracer.corners_of(*handle)));
-            if covers(tracer.normal_of(first), &plane, self.a.vertices(), self.b.vertices()) {
+            let normal = tracer.normal_of(first);
+            if self.may_be_cut(normal, &plane) && covers(normal, &plane, self.a.vertices(), self.b.vertices()) {
                 return Shaft::Blocked;
             }
         }
         Shaft::Undecided(inside)
     }
+
+    /// False only if some line between corners of the two surely meets none of the facets of a plane: most planes do not cut the hull in
+    /// two, and this is cheaper than to ask what they cover.
+    fn may_be_cut(&self, normal: Vec3, facets: &[&[Vec3]]) -> bool {
+        let point = facets[0][0];
+        let size = self.low.distance(self.high);
+        self.a.vertices().iter().all(|from| {
+            let above = normal.dot(*from - point);
+            self.b.vertices().iter().all(|to| {
+                let change = above - normal.dot(*to - point);
+                if change.abs() <= CLEARLY * size {
+                    return true;
+                }
+                let crossing = *from + above / change * (*to - *from);
+                facets.iter().any(|facet| may_hold_point(facet, normal, crossing, CLEARLY * size))
+            })
+        })
+    }
+}
+
+/// Share of a hull's size that rounding is far below.
+const CLEARLY: f64 = 1e-6;
+
+/// False only if a point of the plane of a convex polygon is further than the margin outside of one of its edges. The normal may be that
+/// of its front or of its back.
+fn may_hold_point(polygon: &[Vec3], normal: Vec3, point: Vec3, margin: f64) -> bool {
+    let (mut left, mut right) = (true, true);
+    let mut from = polygon[polygon.len() - 1];
+    for &to in polygon {
+        let edge = to - from;
+        let (side, margin) = (normal.dot(edge.cross(point - from)), margin * edge.length());
+        left &= side >= -margin;
+        right &= side <= margin;
+        from = to;
+    }
+    left || right
+}
+
+/// What rounding can do to heights among points of a box, at most.
+fn rounding(low: Vec3, high: Vec3) -> f64 {
+    16.0 * f64::EPSILON * (2.0 * low.abs().max(high.abs()).max_element() + low.distance(high))
+}
+
+/// [`height`], quickly where it is beyond the rounding of any.
+#[inline]
+fn height_above(normal: Vec3, on_plane: Vec3, point: Vec3, rounding: f64) -> f64 {
+    let above = normal.dot(point - on_plane);
+    if above.abs() > rounding { above } else { height(normal, on_plane, point) }
 }
 
 /// The planes that bound the hull of two polygons from the side, outward normal and a point of each: those through an edge of one
 /// and a corner of the other with no corner of either above.
-fn side_planes(a: &Polygon, b: &Polygon) -> Vec<(Vec3, Vec3)> {
+fn side_planes(a: &Polygon, b: &Polygon, rounding: f64) -> Vec<(Vec3, Vec3)> {
     let mut planes = Vec::with_capacity(a.vertices().len() + b.vertices().len());
     for (one, other) in [(a, b), (b, a)] {
         let v = one.vertices();
         for (k, start) in v.iter().enumerate() {
             let edge = v[(k + 1) % v.len()] - *start;
+            let edge_squared = edge.length_squared();
             for apex in other.vertices() {
-                let normal = edge.cross(*apex - *start);
+                let to_apex = *apex - *start;
+                let normal = edge.cross(to_apex);
                 let length = normal.length();
-                if length <= 1e-9 * edge.length() * apex.distance(*start) {
+                if length <= 1e-9 * (edge_squared * to_apex.length_squared()).sqrt() {
                     continue;
                 }
                 let (mut above, mut below) = (false, false);
                 let normal = normal / length;
-                for corner in v.iter().chain(other.vertices()) {
-                    let height = height(normal, *start, *corner);
+                // The other's corners first: they tell most planes apart.
+                for corner in other.vertices().iter().chain(v) {
+                    let height = height_above(normal, *start, *corner, rounding);
                     above |= height > 0.0;
                     below |= height < 0.0;
                     if above && below {

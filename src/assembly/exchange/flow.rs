@@ -1,6 +1,6 @@
 //! What passes between two patches, and between many.
 
-use super::pair::{Ladder, Nodes, unoccluded};
+use super::pair::{Ladder, Nodes, facing, unoccluded};
 use super::visibility::{self, Desk, End, Obstacles, View, Visibility};
 use super::{Exchange, ExchangeReport, Occlusion};
 use crate::sampling::mix;
@@ -48,8 +48,11 @@ impl Means<'_> {
     /// `desk` is room to work in, and leaves no trace in the result.
     pub fn flow(&self, desk: &mut Desk, pair: [(usize, End, &Nodes); 2], view: Option<&View>) -> Option<Flow> {
         let [(i, a, nodes_a), (j, b, nodes_b)] = pair;
-        let tolerance = self.settings.tolerance;
-        let (whole, error) = unoccluded(self.ladder, (a.polygon, nodes_a), (b.polygon, nodes_b), tolerance)?;
+        let (one, other, tolerance) = ((a.polygon, nodes_a), (b.polygon, nodes_b), self.settings.tolerance);
+        let (whole, error) = match view {
+            Some(View::Clear { is_facing: true }) => facing(self.ladder, one, other, tolerance)?,
+            _ => unoccluded(self.ladder, one, other, tolerance)?,
+        };
         let is_open = !matches!(view, Some(View::Clear { .. }));
         let tally =
             Tally { n_pairs: 1, n_open: usize::from(is_open), quadrature_error: error / whole, ..Tally::default() };

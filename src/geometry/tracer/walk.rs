@@ -10,6 +10,30 @@ use crate::geometry::Ray;
 /// Room for waiting children on the stack; deeper trees take a heap.
 const WAITING: usize = 96;
 
+/// A question to the tree.
+trait Visitor {
+    type Answer;
+    /// A child that waits, and what is known of it.
+    type Waiting: Copy + Default;
+
+    /// Tests all blocks.
+    fn test_all(&self, simd: impl Eight, tree: &Tree) -> Self::Answer;
+
+    /// Walks down the tree, with room for the children that wait.
+    fn walk(&self, simd: impl Eight, tree: &Tree, waiting: &mut [Self::Waiting]) -> Self::Answer;
+}
+
+#[inline(always)]
+fn visit<V: Visitor>(simd: impl Eight, tree: &Tree, visitor: &V) -> V::Answer {
+    if tree.nodes.is_empty() {
+        visitor.test_all(simd, tree)
+    } else if tree.n_waiting <= WAITING {
+        visitor.walk(simd, tree, &mut [V::Waiting::default(); WAITING])
+    } else {
+        visitor.walk(simd, tree, &mut vec![V::Waiting::default(); tree.n_waiting])
+    }
+}
+
 /// The closest polygon met that is not in `plane`.
 pub(super) struct Closest<'a> {
     pub tracer: &'a Tracer,
@@ -23,23 +47,19 @@ impl Kernel for Closest<'_> {
 
     #[inline(always)]
     fn run(self, simd: impl Eight) -> Option<Hit> {
-        let tree = &self.tracer.tree;
-        if tree.nodes.is_empty() {
-            self.test_all(simd, tree)
-        } else if tree.n_waiting <= WAITING {
-            self.walk(simd, tree, &mut [0; WAITING])
-        } else {
-            self.walk(simd, tree, &mut vec![0; tree.n_waiting])
-        }
+        visit(simd, &self.tracer.tree, &self)
     }
 }
 
-impl Closest<'_> {
+impl Visitor for Closest<'_> {
+    type Answer = Option<Hit>;
+    type Waiting = u64;
+
     #[inline(always)]
     fn test_all(&self, simd: impl Eight, tree: &Tree) -> Option<Hit> {
         let mut so_far = SoFar { lanes: LaneRay::new(simd, &self.local), t_max: 0.0, best: None };
         for block in &tree.blocks {
-            self.visit(simd, block, &mut so_far);
+            self.meet(simd, block, &mut so_far);
         }
         so_far.best
     }
@@ -60,7 +80,7 @@ impl Closest<'_> {
             }
             let child = next as u32;
             if child & BLOCK != 0 {
-                self.visit(simd, &tree.blocks[(child & !BLOCK) as usize], &mut so_far);
+                self.meet(simd, &tree.blocks[(child & !BLOCK) as usize], &mut so_far);
                 continue;
             }
             // Wait for the nearest last.
@@ -83,10 +103,12 @@ impl Closest<'_> {
         }
         so_far.best
     }
+}
 
+impl Closest<'_> {
     /// Looks for a polygon of the block that comes before the best so far.
     #[inline(always)]
-    fn visit(&self, simd: impl Eight, block: &Block, so_far: &mut SoFar) {
+    fn meet(&self, simd: impl Eight, block: &Block, so_far: &mut SoFar) {
         let candidates = block.candidates(simd, &so_far.lanes, [self.plane]);
         let mut left = candidates.possible;
         while left != 0 {
@@ -130,18 +152,14 @@ impl Kernel for Any<'_> {
 
     #[inline(always)]
     fn run(self, simd: impl Eight) -> bool {
-        let tree = &self.tracer.tree;
-        if tree.nodes.is_empty() {
-            self.test_all(simd, tree)
-        } else if tree.n_waiting <= WAITING {
-            self.walk(simd, tree, &mut [0; WAITING])
-        } else {
-            self.walk(simd, tree, &mut vec![0; tree.n_waiting])
-        }
+        visit(simd, &self.tracer.tree, &self)
     }
 }
 
-impl Any<'_> {
+impl Visitor for Any<'_> {
+    type Answer = bool;
+    type Waiting = u32;
+
     #[inline(always)]
     fn test_all(&self, simd: impl Eight, tree: &Tree) -> bool {
         let lanes = LaneRay::new(simd, &self.local);
@@ -177,7 +195,9 @@ impl Any<'_> {
         }
         false
     }
+}
 
+impl Any<'_> {
     #[inline(always)]
     fn is_blocked_in(&self, simd: impl Eight, block: &Block, lanes: &LaneRay) -> bool {
         let candidates = block.candidates(simd, lanes, self.planes);

@@ -8,6 +8,8 @@ mod close;
 mod contour;
 mod disk;
 mod double;
+mod factor;
+mod grid;
 mod ladder;
 mod lambert;
 mod point;
@@ -30,12 +32,12 @@ use clip::cut;
 use close::Close;
 use double::Double;
 use real::Vector;
-use shape::{Shape, point};
+use shape::Shape;
 
-/// The longest product rule that is tried before contours: as dear as they are.
-const CHEAP: usize = 8;
-/// The longest that is tried before contours in double-double.
-const DEAR: usize = 16;
+/// Nanoseconds that rules may take before contours are tried: as dear as those are.
+const CHEAP: usize = 4_000;
+/// The same before contours in double-double.
+const DEAR: usize = 60_000;
 
 /// T of two polygons with nothing between them, each with its nodes, and an estimate of its error, both in m² sr; `None` where
 /// they do not face each other.
@@ -60,8 +62,7 @@ pub fn unoccluded(ladder: &Ladder, a: (&Polygon, &Nodes), b: (&Polygon, &Nodes),
         return None;
     }
     if side_a.is_whole && side_b.is_whole {
-        let highest = [side_a.highest, side_b.highest];
-        let pair = Apart::new(ladder, [a.1, b.1], highest, Vector::difference(origin_a, origin_b));
+        let pair = Apart::new(ladder, [a.1, b.1], Vector::difference(origin_a, origin_b))?;
         let corners = || [a.0, b.0].map(|p| Vector::from_point(origin_a, p.vertices()));
         return exchange(&pair, corners, tolerance);
     }
@@ -72,29 +73,35 @@ pub fn unoccluded(ladder: &Ladder, a: (&Polygon, &Nodes), b: (&Polygon, &Nodes),
     let part_a = side_a.part(&corners_a, &corners_b)?;
     let part_b = side_b.part(&corners_b, &corners_a)?;
     let nodes = [ladder.bare(&part_a), ladder.bare(&part_b)];
-    let highest = [top_of(&part_a, &nodes[1].shape, part_b[0]), top_of(&part_b, &nodes[0].shape, part_a[0])];
-    if highest.iter().any(|height| *height <= 0.0) {
-        return None;
-    }
-    let pair = Apart::new(ladder, [&nodes[0], &nodes[1]], highest, part_b[0] - part_a[0]);
+    let pair = Apart::new(ladder, [&nodes[0], &nodes[1]], part_b[0] - part_a[0])?;
     exchange(&pair, || [part_a, part_b], tolerance)
 }
 
 /// T of a pair whose parts see each other wholly, by the cheapest way that reaches the tolerance.
 fn exchange(pair: &Apart, corners: impl FnOnce() -> [Vec<Vector<Double>>; 2], tolerance: f64) -> Option<(f64, f64)> {
-    if let Some(rungs) = pair.rungs(tolerance, CHEAP) {
-        return Some(pair.sum(rungs));
+    if let Some(found) = pair.exchange(tolerance, CHEAP) {
+        return Some(found);
     }
-    // The shortest rule tells at least how much it is about.
-    let guess = pair.sum([0, 0]).0;
+    // The middles tell what it is about.
+    let guess = pair.guess();
     let close = Close::new(pair.arch(), corners());
     if let Some(found) = close.in_single(guess, tolerance) {
         return Some(found);
     }
-    match pair.rungs(tolerance, DEAR) {
-        Some(rungs) => Some(pair.sum(rungs)),
-        None => close.in_double(guess, tolerance),
+    pair.exchange(tolerance, DEAR).or_else(|| close.in_double(guess, tolerance))
+}
+
+/// The same for two that are known to be in front of each other's planes, all but perhaps some corners that lie in those.
+pub fn facing(ladder: &Ladder, a: (&Polygon, &Nodes), b: (&Polygon, &Nodes), tolerance: f64) -> Option<(f64, f64)> {
+    let [first, second] = if precedes(b.0, a.0) { [b, a] } else { [a, b] };
+    let pair =
+        Apart::new(ladder, [first.1, second.1], Vector::difference(first.0.vertices()[0], second.0.vertices()[0]))?;
+    if pair.is_high()
+        && let Some(found) = pair.exchange(tolerance, CHEAP)
+    {
+        return Some(found);
     }
+    unoccluded(ladder, a, b, tolerance)
 }
 
 /// An order of polygons that does not depend on which comes first.
@@ -138,9 +145,4 @@ impl Side {
         let part = cut(corners, &heights);
         (part.len() >= 3).then_some(part)
     }
-}
-
-/// The greatest height above the plane of a shape, one point of which is given.
-fn top_of(part: &[Vector<Double>], plane: &Shape, on_plane: Vector<Double>) -> f64 {
-    part.iter().map(|v| plane.normal.dot(point(*v - on_plane))).fold(0.0, f64::max)
 }
