@@ -6,6 +6,7 @@ mod measurement;
 mod operators;
 mod orbits;
 mod system;
+mod translates;
 
 pub use exchange::{
     Enclosure, Exchange, ExchangeReport, Ladder, Nodes, Occlusion, Repair, RepairMethod, enclose, exchange_of_pair,

@@ -71,7 +71,11 @@ fn blocked() -> Refinement<'static> {
 
 /// Surfaces with the symmetry of the level's sectors.
 fn turned(level: usize, surfaces: Vec<Vec<Polygon>>) -> Shape {
-    Shape { bodies: surfaces.into_iter().map(Body::black).collect(), symmetries: of_sectors(SECTORS * level) }
+    Shape {
+        bodies: surfaces.into_iter().map(Body::black).collect(),
+        symmetries: of_sectors(SECTORS * level),
+        ..Shape::default()
+    }
 }
 
 /// A disk about the z axis at this height, facing up or down, in a triangle a sector.
@@ -203,7 +207,7 @@ pub fn sphere_rectangle(case: &Case) -> Result<Answers, CaseError> {
     let refinement = Refinement { levels: &LEVELS[2..12], powers: HORIZON, enough: ENOUGH };
     factors(refinement, &[("F", 0, 1)], |level| {
         let bodies = vec![Body::black(ball(radius, level, Facing::Left)?), Body::black(vec![rectangle.clone()])];
-        Ok(Shape { bodies, symmetries: of_a_box(Vec3::ZERO, Vec3::X, Vec3::Y) })
+        Ok(Shape { bodies, symmetries: of_a_box(Vec3::ZERO, Vec3::X, Vec3::Y), ..Shape::default() })
     })
 }
 
@@ -218,7 +222,7 @@ pub fn concentric_spheres(case: &Case) -> Result<Answers, CaseError> {
     let [inner, outer] = lengths(&case.geometry, ["r_inner", "r_outer"])?;
     factors(even(2), &[("F_12", 0, 1), ("F_21", 1, 0), ("F_22", 1, 1)], |level| {
         let bodies = nested_balls(inner, outer, SECTORS * level, 4 * level)?.map(Body::black).into();
-        Ok(Shape { bodies, symmetries: of_sectors(SECTORS * level) })
+        Ok(Shape { bodies, symmetries: of_sectors(SECTORS * level), ..Shape::default() })
     })
 }
 
