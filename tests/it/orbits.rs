@@ -88,7 +88,7 @@ fn what_is_no_symmetry_is_left_out_and_so_are_surfaces_that_only_stand_in_the_wa
 fn patches_in_rows_exchange_what_they_do_one_by_one() {
     for (scene, axes) in [
         (gallery::parallel_plates(), vec![Vec3::X, Vec3::Y]),
-        (gallery::furnace_cube(), vec![Vec3::X, Vec3::Y, Vec3::Z]),
+        (gallery::furnace_cube(&[0.5], &[1.0]).unwrap(), vec![Vec3::X, Vec3::Y, Vec3::Z]),
         // Here something stands between some of those that differ by steps.
         (gallery::corner_box(), vec![Vec3::X, Vec3::Y, Vec3::Z]),
     ] {

@@ -125,7 +125,7 @@ pub fn rectangle_family(case: &Case) -> Result<Answers, CaseError> {
         slopes.push((at(above)?.0 - at(below)?.0) / (above - below));
     }
     let slope_error = f64::EPSILON * value / steps[steps.len() - 1];
-    let limit = extrapolate(&steps, &slopes, EVEN, slope_error);
+    let limit = extrapolate(&steps, &slopes, EVEN, &[slope_error; DIFFERENCE_STEPS.len()]);
     let mut answers = Answers::new(Demand::Digits);
     answers.number("F", value, error * value);
     answers.number("dF", limit.value, limit.error);

@@ -7,7 +7,7 @@ use super::limit::{EVEN, Limit, Refinement, refine};
 use super::model::{Body, Model, Shape, WHOLE};
 use super::reader::Case;
 use super::revolution::{Facing, arc, revolve, sectors};
-use super::round::{ACCURACY, DEAR, ENOUGH, LEVELS, SECTORS, lengths, n_rings, nested_balls};
+use super::round::{ACCURACY, DEAR, ENOUGH, LEVELS, SECTORS, agreeing, lengths, n_rings, nested_balls};
 use super::symmetry::of_sectors;
 use super::value::Value;
 use crate::geometry::Polygon;
@@ -18,6 +18,9 @@ const N_BOUNCES: usize = 11;
 
 /// Sectors a level of a sphere in bands: narrow ones keep apart what is finer than they are.
 const SECTORS_OF_BANDS: usize = 32;
+
+/// Form factors are asked for to as many digits more as radiosities lose; no more than three.
+const LEAST_ABSORBED: f64 = 1e-3;
 
 /// Rings of concentric spheres, and how many numbers of them are tried.
 const FEWEST_RINGS: usize = 5;
@@ -151,12 +154,13 @@ pub fn grey(case: &Case) -> Result<Answers, CaseError> {
     if albedo.len() != 2 || exitance.len() != 2 {
         return Err(CaseError::Geometry { field: "rho".to_string(), problem: "and 'E' must have two numbers each" });
     }
-    let limits = refine(refinement(2), |level| {
+    let limits = refine(agreeing(), |level| {
         let bodies = nested_balls(inner, outer, SECTORS * level, 4 * level)?.map(Body::black).into();
         let shape = Shape { bodies, symmetries: of_sectors(SECTORS * level), ..Shape::default() };
-        let model = Model::folded(shape, WHOLE, |_, _| true, ACCURACY)?;
-        let (b, h) = constant_on_surfaces(&model.form_factors(), &albedo, &exitance)?;
         let absorbed = 1.0 - albedo[0].max(albedo[1]);
+        let accuracy = ACCURACY * absorbed.clamp(LEAST_ABSORBED, 1.0);
+        let model = Model::folded(shape, WHOLE, |_, _| true, accuracy)?;
+        let (b, h) = constant_on_surfaces(&model.form_factors(), &albedo, &exitance)?;
         Ok((vec![b[0], b[1], b[0] - h[0]], model.noise() * b[0].max(b[1]) / absorbed))
     })?;
     Ok(named(&["B1", "B2", "q1"], &limits))
