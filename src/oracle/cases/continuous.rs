@@ -97,13 +97,14 @@ pub fn facing_squares(case: &Case) -> Result<Answers, CaseError> {
         let shape = Shape { bodies: vec![body(0)?, body(1)?], symmetries: symmetries.clone(), steps };
         Model::folded(shape, WHOLE, |from, to| from != to, ACCURACY)
     };
-    let limits = refine(Refinement { levels: &[2, 4, 6, 8, 12, 16, 24, 32], powers: EVEN, enough: ENOUGH }, |n| {
-        let model = model(n)?;
-        let radiance = model.radiance()?;
-        let mut values = model.gathered(&radiance, &probes);
-        values.extend(model.radiosity(&radiance));
-        Ok((values, model.radiosity_noise(&radiance)))
-    })?;
+    let limits =
+        refine(Refinement { levels: &[2, 4, 6, 8, 12, 16, 24, 32, 48, 64], powers: EVEN, enough: ENOUGH }, |n| {
+            let model = model(n)?;
+            let radiance = model.radiance()?;
+            let mut values = model.gathered(&radiance, &probes);
+            values.extend(model.radiosity(&radiance));
+            Ok((values, model.radiosity_noise(&radiance)))
+        })?;
     let names = ["corner", "edge_mid", "centre", "quarter"];
     let mut answers = Answers::new(Demand::Estimate);
     for (k, limit) in limits.iter().enumerate() {

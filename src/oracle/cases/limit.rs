@@ -39,6 +39,9 @@ const SUDDEN: f64 = 0.05;
 /// One level more improves an estimate by no more than this: steps in the ratio 2/3 and five even powers.
 const FASTEST: f64 = 50.0;
 
+/// A level on which values are known worse than this helps no limit: it is what passes at most.
+const WORST: f64 = super::answer::EXTRAPOLATED;
+
 /// Fewer levels may agree by luck.
 const FEWEST: usize = 5;
 
@@ -145,6 +148,11 @@ pub fn refine(
     let mut limits = Vec::new();
     for level in levels {
         let (values, error) = compute(*level)?;
+        // What is laid through a level that is badly known is no better: leave it out, unless there is nothing else.
+        let is_last = *level == levels[levels.len() - 1];
+        if error > WORST && !(is_last && table.is_empty()) {
+            continue;
+        }
         noise.push(error);
         steps.push(1.0 / *level as f64);
         table.push(values);
