@@ -26,9 +26,10 @@ const FLOORS: [&[&str]; 17] = [
 ];
 
 /// Outside crates and the rooms that are their only doors.
-const DOORS: [(&str, &[&str]); 20] = [
+const DOORS: [(&str, &[&str]); 21] = [
     ("faer", &["linalg"]),
     ("sprs", &["linalg"]),
+    ("zip", &["linalg"]),
     ("nalgebra", &["linalg"]),
     ("glam", &["geometry"]),
     ("obvhs", &["geometry"]),
@@ -44,7 +45,7 @@ const DOORS: [(&str, &[&str]); 20] = [
     ("statrs", &["stats"]),
     ("clap", &["cli"]),
     ("indicatif", &["cli"]),
-    ("blake3", &["scene"]),
+    ("blake3", &["linalg", "scene"]),
     ("tempfile", &["report", "cli"]),
     ("strsim", &["gallery", "scene"]),
 ];

@@ -2,9 +2,11 @@
 
 mod exchange;
 mod laws;
+mod letters;
 mod measurement;
 mod operators;
 mod orbits;
+mod sensitivity;
 mod system;
 mod translates;
 
@@ -13,7 +15,9 @@ pub use exchange::{
     point_factor, point_factors, point_to_disk, unoccluded,
 };
 pub use laws::Laws;
+pub use letters::Letter;
 pub use measurement::{Gather, Measurement};
 pub use operators::{AdjointTransport, Propagation, Transport};
 pub use orbits::Orbits;
+pub use sensitivity::Sensitivity;
 pub use system::{AdjointSystem, AssemblyError, System, assemble, assemble_orbits, assemble_watched};

@@ -11,7 +11,7 @@
 
 use super::translates::Translates;
 use crate::basis::{Bundles, Patch};
-use crate::geometry::{Affine3, Polygon, Vec3};
+use crate::geometry::{Affine3, DisjointSets, Polygon, Vec3};
 use crate::scene::Scene;
 use std::collections::HashMap;
 
@@ -46,25 +46,24 @@ impl Orbits {
             }
         }
         let (facet_places, patch_places) = (Places::new(&facets), Places::new(&patches));
-        let mut parent: Vec<usize> = (0..chosen.len()).collect();
+        let mut alike = DisjointSets::new(chosen.len());
         let mut symmetries = Vec::new();
         for candidate in candidates {
             let images = permutation(&facet_places, candidate).and_then(|_| permutation(&patch_places, candidate));
             let Some(images) = images else { continue };
             let mut symmetry = vec![None; bundles.n_bundles()];
             for (k, image) in images.into_iter().enumerate() {
-                let (a, b) = (root(&mut parent, k), root(&mut parent, image));
-                parent[a.max(b)] = a.min(b);
+                alike.join(k, image);
                 symmetry[chosen[k]] = Some(chosen[image]);
             }
             symmetries.push(symmetry);
         }
 
-        // Number the roots in their order; a root comes before all others of its orbit.
+        // Number the orbits in the order of their least members.
         let mut members: Vec<Vec<usize>> = Vec::new();
         let mut orbit_of = vec![None; bundles.n_bundles()];
         for (k, &bundle) in chosen.iter().enumerate() {
-            let first = root(&mut parent, k);
+            let first = alike.least(k);
             let orbit = orbit_of[chosen[first]].unwrap_or(members.len());
             if orbit == members.len() {
                 members.push(Vec::new());
@@ -108,18 +107,17 @@ impl Orbits {
         if !self.symmetries.iter().any(|symmetry| stays(&symmetry)) {
             return members.iter().map(|member| (*member, 1)).collect();
         }
-        let mut parent: Vec<usize> = (0..members.len()).collect();
+        let mut alike = DisjointSets::new(members.len());
         for symmetry in self.symmetries.iter().filter(stays) {
             for (k, member) in members.iter().enumerate() {
                 let Some(image) = symmetry[*member].and_then(|image| members.binary_search(&image).ok()) else {
                     continue;
                 };
-                let (a, b) = (root(&mut parent, k), root(&mut parent, image));
-                parent[a.max(b)] = a.min(b);
+                alike.join(k, image);
             }
         }
         let mut count = vec![0; members.len()];
-        (0..members.len()).for_each(|k| count[root(&mut parent, k)] += 1);
+        (0..members.len()).for_each(|k| count[alike.least(k)] += 1);
         (0..members.len()).filter(|k| count[*k] > 0).map(|k| (members[k], count[k])).collect()
     }
 
@@ -127,14 +125,6 @@ impl Orbits {
     pub fn orbit_of(&self, bundle: usize) -> Option<usize> {
         self.orbit_of[bundle]
     }
-}
-
-fn root(parent: &mut [usize], mut k: usize) -> usize {
-    while parent[k] != k {
-        parent[k] = parent[parent[k]];
-        k = parent[k];
-    }
-    k
 }
 
 /// Where polygons are: looked up by their centroids, rounded to cells far above the rounding.

@@ -1,7 +1,9 @@
 //! The command line.
 
+use super::export;
 use super::memory::Bytes;
-use crate::assembly::{Exchange, Occlusion};
+use crate::assembly::{Exchange, Letter, Occlusion};
+use crate::linalg::format::MatrixFormat;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -35,12 +37,32 @@ const SOLVE_EXAMPLES: &str = "\
 Examples:
   etendue solve cornell-box                         a table of means by surface
   etendue solve cornell-box --json -q | jq .laws    one JSON object, and nothing else
-  etendue solve room.xml -D albedo=0.5 -o room.json a scene file, one of its parameters set";
+  etendue solve room.xml -D albedo=0.5 -o room.json a scene file, one of its parameters set
+  etendue solve --matrix K.mtx --emission E.mtx     an equation that something else made";
+
+const SENSITIVITY_EXAMPLES: &str = "\
+Examples:
+  etendue sensitivity cornell-box --sensor irradiance:floor         mean irradiance of a surface
+  etendue sensitivity cornell-box --sensor radiance:back --json     mean radiance leaving one, as JSON";
+
+const EXPORT_EXAMPLES: &str = "\
+Examples:
+  etendue export cornell-box                           K and E as Matrix Market files in out/cornell-box-matrices
+  etendue export room.xml --what T,E --format npz      what NumPy and SciPy read
+  etendue export room.xml --what F --format radiance   what Radiance's rmtxop and dctimestep read
+
+  K one bounce, K = S G    T exchange, m² sr    F form factors (G)    S scattering    E emission
+
+  Of what differs from band to band there is a file a band; in Radiance's format, one with a component a band.";
+
+/// A method of every kind.
+const STUDY_SOLVERS: &str = "lu,gth,cholesky,neumann,gauss-seidel,southwell,chebyshev,cg,gmres";
 
 const STUDY_EXAMPLES: &str = "\
 Examples:
   etendue study cornell-box                         writes out/cornell-box/report.html and its files
-  etendue study room.xml --patch-size 0.1 -o room   a scene file, cut as finely as you say";
+  etendue study room.xml --patch-size 0.1 -o room   a scene file, cut as finely as you say
+  etendue study two-rooms --solvers all             every method there is";
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
@@ -50,6 +72,12 @@ pub enum Command {
     /// Solve a scene by one method and print its light field
     #[command(after_help = SOLVE_EXAMPLES)]
     Solve(Solve),
+    /// Derivatives of a sensor's reading with respect to every albedo and emission, from one adjoint solution
+    #[command(after_help = SENSITIVITY_EXAMPLES)]
+    Sensitivity(Sensitivity),
+    /// Write the matrices of a scene to files, with what their rows stand for
+    #[command(after_help = EXPORT_EXAMPLES)]
+    Export(Export),
     /// Answer reference cases and judge the answers
     Check(Check),
     /// List the built-in scenes
@@ -60,7 +88,8 @@ pub enum Command {
 #[derive(Debug, Args)]
 pub struct SceneArguments {
     /// Name of a gallery scene (`etendue gallery` lists them), or path of a Mitsuba 3 XML file
-    pub scene: String,
+    #[arg(required = true)]
+    pub scene: Option<String>,
 
     /// Set a parameter of a scene file, a `$name` in it; may be given several times
     #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = definition)]
@@ -108,6 +137,11 @@ pub struct Study {
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
 
+    /// Methods to compare, or all; what one refuses is reported
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = STUDY_SOLVERS)]
+    #[arg(value_parser = clap::builder::PossibleValuesParser::new([solver_names(), vec!["all"]].concat()))]
+    pub solvers: Vec<String>,
+
     /// Stop iterative solvers at this relative residual
     #[arg(long, value_name = "RESIDUAL", default_value = "1e-12", value_parser = positive, allow_negative_numbers = true)]
     pub tolerance: f64,
@@ -122,9 +156,18 @@ pub struct Study {
 }
 
 #[derive(Debug, Args)]
+#[command(mut_arg("scene", |scene| scene.required(false).required_unless_present("matrix")))]
 pub struct Solve {
     #[command(flatten)]
     pub scene: SceneArguments,
+
+    /// Solve L = E + K L for a K of someone else's: a file ending in .mtx, .npz or .rmx; its rows are the unknowns
+    #[arg(long, value_name = "FILE", conflicts_with = "scene", requires = "emission")]
+    pub matrix: Option<PathBuf>,
+
+    /// E for --matrix, a column a band
+    #[arg(long, value_name = "FILE", requires = "matrix")]
+    pub emission: Option<PathBuf>,
 
     /// Write the JSON object to this file too, whole or not at all
     #[arg(short, long, value_name = "FILE")]
@@ -141,6 +184,46 @@ pub struct Solve {
     /// End iterative solvers after this many products with K, converged or not
     #[arg(long, value_name = "N", value_parser = products, allow_negative_numbers = true)]
     pub max_products: Option<u64>,
+}
+
+#[derive(Debug, Args)]
+pub struct Sensitivity {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+
+    /// What is read: irradiance:SURFACE or radiance:SURFACE, the mean over that surface
+    #[arg(long, value_name = "SENSOR")]
+    pub sensor: String,
+
+    /// Write the JSON object to this file too, whole or not at all
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+
+    /// Method for both solutions
+    #[arg(long, default_value = "cg", value_parser = clap::builder::PossibleValuesParser::new(solver_names()))]
+    pub solver: String,
+
+    /// Stop iterative solvers at this relative residual
+    #[arg(long, value_name = "RESIDUAL", default_value = "1e-12", value_parser = positive, allow_negative_numbers = true)]
+    pub tolerance: f64,
+}
+
+#[derive(Debug, Args)]
+pub struct Export {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+
+    /// Which matrices, of K, T, F, S, E
+    #[arg(long, value_name = "LETTERS", value_delimiter = ',', default_value = "K,E")]
+    pub what: Vec<Letter>,
+
+    /// mtx (Matrix Market), npz (NumPy, SciPy) or radiance
+    #[arg(long, default_value = "mtx", value_parser = export::format)]
+    pub format: MatrixFormat,
+
+    /// Folder to write, whole or not at all [default: out/SCENE-matrices]
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
 }
 
 /// Which cases.

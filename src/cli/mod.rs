@@ -3,13 +3,16 @@
 mod arguments;
 mod check;
 mod exit;
+mod export;
 mod gallery;
+mod matrix;
 mod memory;
 mod output;
 mod progress;
 mod provenance;
 mod record;
 mod scene;
+mod sensitivity;
 mod solve;
 mod study;
 mod table;
@@ -43,6 +46,8 @@ fn run(arguments: &Arguments, command: Vec<String>) -> Result<(), Failure> {
     match &arguments.command {
         Command::Study(study) => study::run(arguments, study, command),
         Command::Solve(solve) => solve::run(arguments, solve, command),
+        Command::Sensitivity(asked) => sensitivity::run(arguments, asked, command),
+        Command::Export(export) => export::run(arguments, export, command),
         Command::Check(check) => check::run(arguments, check),
         Command::Gallery => gallery::run(arguments),
     }

@@ -2,9 +2,8 @@
 
 use crate::assembly::System;
 use crate::basis::Bundles;
-use crate::linalg::Block;
 use crate::scene::{Scene, Side};
-use crate::solver::{Solution, Stop};
+use crate::solver::{Solution, SolveReport, Stop};
 use crate::study::{Provenance, tessellations};
 use serde::Serialize;
 
@@ -18,7 +17,7 @@ pub struct Record<'a> {
     /// Names of the bands, in the order of every array that has one number a band.
     bands: &'a [String],
     /// In the order of the unknowns.
-    bundles: Vec<BundleRecord<'a>>,
+    bundles: Vec<SolvedRecord<'a>>,
     laws: LawsRecord,
     exchange: ExchangeRecord,
     report: ReportRecord,
@@ -28,7 +27,18 @@ pub struct Record<'a> {
 }
 
 #[derive(Serialize)]
-struct BundleRecord<'a> {
+struct SolvedRecord<'a> {
+    #[serde(flatten)]
+    bundle: BundleRecord<'a>,
+    /// W m⁻² sr⁻¹.
+    radiance: Vec<f64>,
+    /// W m⁻².
+    irradiance: Vec<f64>,
+}
+
+/// One unknown.
+#[derive(Serialize)]
+pub struct BundleRecord<'a> {
     element: usize,
     surface: &'a str,
     /// "front" or "back".
@@ -39,11 +49,8 @@ struct BundleRecord<'a> {
     bin: usize,
     /// m² sr.
     etendue: f64,
-    /// W m⁻² sr⁻¹, as is the radiance.
+    /// W m⁻² sr⁻¹.
     emission: Vec<f64>,
-    radiance: Vec<f64>,
-    /// W m⁻².
-    irradiance: Vec<f64>,
 }
 
 #[derive(Serialize)]
@@ -75,17 +82,33 @@ struct ExchangeRecord {
 }
 
 #[derive(Serialize)]
-struct ReportRecord {
-    solver: &'static str,
-    stop: String,
+pub struct ReportRecord {
+    pub solver: &'static str,
+    pub stop: String,
     n_iterations: usize,
     n_applies: usize,
     n_adjoint_applies: usize,
-    products: f64,
-    true_residual: f64,
+    pub products: f64,
+    pub true_residual: f64,
     /// Bound on ‖L − (I − K)⁻¹E‖∞ / ‖L‖∞; null where absorption is too small for one.
-    error_bound: Option<f64>,
-    seconds: f64,
+    pub error_bound: Option<f64>,
+    pub seconds: f64,
+}
+
+impl ReportRecord {
+    pub fn new(report: &SolveReport, seconds: f64) -> Self {
+        Self {
+            solver: report.method,
+            stop: spoken(report.stop).to_string(),
+            n_iterations: report.n_iterations,
+            n_applies: report.n_applies,
+            n_adjoint_applies: report.n_adjoint_applies,
+            products: report.products,
+            true_residual: report.true_residual,
+            error_bound: report.bracket.as_ref().map(|bracket| bracket.relative_width()),
+            seconds,
+        }
+    }
 }
 
 /// The record of a solve.
@@ -98,7 +121,6 @@ pub fn record<'a>(
     provenance: Provenance,
 ) -> Record<'a> {
     let irradiance = system.irradiance(&solution.radiance);
-    let report = &solution.report;
     let (laws, exchange) = (system.laws(), system.report());
     Record {
         schema: "etendue.solve/1",
@@ -106,8 +128,14 @@ pub fn record<'a>(
         n_bundles: bundles.n_bundles(),
         n_bands: scene.n_bands(),
         bands: scene.bands(),
-        bundles: (0..bundles.n_bundles())
-            .filter_map(|i| bundle(scene, bundles, system, &solution.radiance, &irradiance, i))
+        bundles: bundle_records(scene, bundles, system)
+            .into_iter()
+            .enumerate()
+            .map(|(i, bundle)| SolvedRecord {
+                bundle,
+                radiance: solution.radiance.row(i).collect(),
+                irradiance: irradiance.row(i).collect(),
+            })
             .collect(),
         laws: LawsRecord {
             reciprocity: laws.reciprocity,
@@ -127,30 +155,18 @@ pub fn record<'a>(
             closure_before_repair: exchange.closure_before_repair,
             repair_strength: exchange.repair.map_or(0.0, |repair| repair.strongest),
         },
-        report: ReportRecord {
-            solver: report.method,
-            stop: spoken(report.stop).to_string(),
-            n_iterations: report.n_iterations,
-            n_applies: report.n_applies,
-            n_adjoint_applies: report.n_adjoint_applies,
-            products: report.products,
-            true_residual: report.true_residual,
-            error_bound: report.bracket.as_ref().map(|bracket| bracket.relative_width()),
-            seconds,
-        },
+        report: ReportRecord::new(&solution.report, seconds),
         notes: tessellations(scene),
         provenance,
     }
 }
 
-fn bundle<'a>(
-    scene: &'a Scene,
-    bundles: &Bundles,
-    system: &System,
-    radiance: &Block,
-    irradiance: &Block,
-    i: usize,
-) -> Option<BundleRecord<'a>> {
+/// What the unknowns are, in their order.
+pub fn bundle_records<'a>(scene: &'a Scene, bundles: &Bundles, system: &System) -> Vec<BundleRecord<'a>> {
+    (0..bundles.n_bundles()).filter_map(|i| bundle(scene, bundles, system, i)).collect()
+}
+
+fn bundle<'a>(scene: &'a Scene, bundles: &Bundles, system: &System, i: usize) -> Option<BundleRecord<'a>> {
     let (element, bin) = bundles.element_of(i);
     let patch = bundles.patch(element)?;
     Some(BundleRecord {
@@ -166,8 +182,6 @@ fn bundle<'a>(
         bin,
         etendue: system.etendue()[i],
         emission: system.emission().row(i).collect(),
-        radiance: radiance.row(i).collect(),
-        irradiance: irradiance.row(i).collect(),
     })
 }
 

@@ -46,7 +46,7 @@ impl Chosen {
 }
 
 fn find(arguments: &SceneArguments) -> Result<(Scene, f64), Failure> {
-    let name = &arguments.scene;
+    let name = arguments.scene.as_deref().ok_or_else(|| Failure::new(Exit::Usage, "which scene?"))?;
     if let Some(entry) = gallery::find(name) {
         if let Some((parameter, _)) = arguments.definitions.first() {
             return Err(Failure::new(

@@ -2,6 +2,7 @@
 
 use super::arguments::{Arguments, Solve};
 use super::exit::{Exit, Failure, NO_STEADY_STATE};
+use super::matrix;
 use super::output;
 use super::progress::Bars;
 use super::provenance::provenance;
@@ -25,6 +26,10 @@ pub fn run(arguments: &Arguments, solve: &Solve, command: Vec<String>) -> Result
     let method = solver::all(solve.tolerance).into_iter().find(|method| method.name() == solve.solver);
     let method = method.ok_or_else(|| Failure::new(Exit::Usage, format!("no solver '{}'", solve.solver)))?;
 
+    if let (Some(matrix), Some(emission)) = (&solve.matrix, &solve.emission) {
+        return matrix::run(arguments, solve, &*method, matrix, emission);
+    }
+
     // Direct methods write out the matrix, its factors, and one of them a copy.
     let an_entry = if method.is_direct() { 16 } else { 0 };
     let square = |n: usize| (n as u64).saturating_mul(n as u64);
@@ -43,17 +48,8 @@ pub fn run(arguments: &Arguments, solve: &Solve, command: Vec<String>) -> Result
     let system = assemble_watched(&chosen.scene, &bundles, exchange, &|done| bars.progress("assemble", done))?;
     bars.progress("solve", 0.0);
 
-    // Solve, within the budget of products.
-    let budget = solve.max_products.map_or(f64::INFINITY, |n| n as f64);
-    let mut observer = |iteration: Iteration<'_>| {
-        if arguments.verbose > 1 {
-            let Iteration { index, products, residual, .. } = iteration;
-            output::error(&format!("{index:>16}  {products:.1} products, residual {residual:.1e}"));
-        }
-        if iteration.products >= budget { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    };
     let start = Instant::now();
-    let solution = method.solve(system.equation(), &mut observer)?;
+    let solution = method.solve(system.equation(), &mut observer(arguments, solve))?;
     let seconds = start.elapsed().as_secs_f64();
     bars.progress("solve", 1.0);
     drop(bars);
@@ -77,8 +73,21 @@ pub fn run(arguments: &Arguments, solve: &Solve, command: Vec<String>) -> Result
     check_converged(&solution.report, solve)
 }
 
+/// Tells of iterations where that was asked for, and ends them at the budget of products.
+pub fn observer(arguments: &Arguments, solve: &Solve) -> impl FnMut(Iteration<'_>) -> ControlFlow<()> {
+    let budget = solve.max_products.map_or(f64::INFINITY, |n| n as f64);
+    let is_told = arguments.verbose > 1;
+    move |iteration| {
+        if is_told {
+            let Iteration { index, products, residual, .. } = iteration;
+            output::error(&format!("{index:>16}  {products:.1} products, residual {residual:.1e}"));
+        }
+        if iteration.products >= budget { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
 /// The answer is there either way; whether it is the one asked for, the exit code says.
-fn check_converged(report: &SolveReport, solve: &Solve) -> Result<(), Failure> {
+pub fn check_converged(report: &SolveReport, solve: &Solve) -> Result<(), Failure> {
     let SolveReport { method, products, true_residual, .. } = report;
     let asked = solve.tolerance;
     let remark = match (report.stop, solve.max_products) {

@@ -8,7 +8,7 @@ use super::provenance::provenance;
 use super::scene::choose;
 use crate::assembly::Gather;
 use crate::study::{SolverRun, StudyOutcome, StudySettings};
-use crate::{report, study};
+use crate::{report, solver, study};
 use std::path::{Path, PathBuf};
 
 /// Family-wise significance of the comparisons.
@@ -35,6 +35,7 @@ pub fn run(arguments: &Arguments, study: &Study, command: Vec<String>) -> Result
     let seed = study.scene.seed;
     let settings = StudySettings {
         resolution: chosen.resolution,
+        solvers: solvers(&study.solvers),
         n_levels: 3,
         tolerance: study.tolerance,
         exchange: study.scene.exchange(),
@@ -66,7 +67,7 @@ pub fn run(arguments: &Arguments, study: &Study, command: Vec<String>) -> Result
 
 /// The report is there either way; whether every solver got where it should, the exit code says.
 fn check_converged(outcome: &StudyOutcome) -> Result<(), Failure> {
-    let unfinished = |run: &&SolverRun| !["direct", "converged"].contains(&run.stop.as_str());
+    let unfinished = |run: &&SolverRun| !["direct", "converged", "refused"].contains(&run.stop.as_str());
     let names: Vec<String> =
         outcome.solvers.iter().filter(unfinished).map(|run| format!("{} ({})", run.solver, run.stop)).collect();
     if names.is_empty() {
@@ -84,8 +85,21 @@ fn folder_name(scene: &str) -> String {
     if name.is_empty() { "scene".to_string() } else { name.to_string() }
 }
 
-fn describe(settings: &StudySettings) -> [(&'static str, String); 7] {
+/// The methods asked for, the first direct one before all others: it is the reference.
+fn solvers(asked: &[String]) -> Vec<String> {
+    let all: Vec<(&str, bool)> = solver::all(1.0).iter().map(|method| (method.name(), method.is_direct())).collect();
+    let is_asked = |name: &str| asked.iter().any(|word| word == name || word == "all");
+    let mut chosen: Vec<(&str, bool)> = all.iter().copied().filter(|(name, _)| is_asked(name)).collect();
+    match chosen.iter().position(|(_, is_direct)| *is_direct) {
+        Some(first) => chosen[..=first].rotate_right(1),
+        None => chosen.splice(0..0, all.iter().copied().find(|(_, is_direct)| *is_direct)).for_each(drop),
+    }
+    chosen.into_iter().map(|(name, _)| name.to_string()).collect()
+}
+
+fn describe(settings: &StudySettings) -> [(&'static str, String); 8] {
     [
+        ("solvers", settings.solvers.join(", ")),
         ("solver_tolerance", format!("{:e}", settings.tolerance)),
         ("walk_samples_a_bundle", settings.walk_samples.to_string()),
         ("path_samples_a_bundle", settings.path_samples.to_string()),
@@ -100,11 +114,16 @@ fn describe(settings: &StudySettings) -> [(&'static str, String); 7] {
 fn summary(outcome: &StudyOutcome, folder: &Path) -> String {
     let mut text = format!("{:14} {:>9} {:>10} {:>10} {:>10}\n", "solver", "products", "seconds", "residual", "error");
     for run in &outcome.solvers {
-        let products = if run.kind == "direct" { "–".to_string() } else { format!("{:.1}", run.products) };
+        let products = if run.kind == "direct" || run.refusal.is_some() {
+            "–".to_string()
+        } else {
+            format!("{:.1}", run.products)
+        };
         text += &format!(
             "{:14} {products:>9} {:>10.3} {:>10.1e} {:>10.1e}  {}\n",
             run.solver, run.seconds, run.true_residual, run.error, run.stop
         );
+        run.refusal.iter().for_each(|refusal| text += &format!("{:14}   {refusal}\n", ""));
     }
     text += &format!("\n{:26} {:>9} {:>10} {:>10} {:>10}\n", "estimator", "slope", "seconds", "worst |z|", "p");
     for run in &outcome.estimators {

@@ -7,7 +7,7 @@
 //! Whatever lies within a margin of rounding counts as covered. The margin is the rounding of the coordinates, divided by the sine at
 //! which a line meets the plane: what it can leave open, seen along the lines, is a slit as wide as the rounding itself.
 
-use super::{Frame, Vec2, Vec3, height};
+use super::{Frame, Vec2, Vec3, height, hull::chain};
 
 /// A margin above this share of Q's size settles nothing.
 const WIDEST_MARGIN: f64 = 1e-8;
@@ -63,7 +63,7 @@ pub(super) fn covers(normal: Vec3, facets: &[&[Vec3]], a: &[Vec3], b: &[Vec3]) -
     }
     facets.len() > 1
         && crossings.iter().all(|x| facets.iter().any(|facet| holds(facet, *x)))
-        && nothing_left(hull(crossings), &facets, margin)
+        && nothing_left(chain(crossings.into_iter().map(|x| (x, x))), &facets, margin)
 }
 
 /// True if the facets cover the convex region, but for strips thinner than the margin.
@@ -143,25 +143,4 @@ fn counter_clockwise(mut polygon: Vec<Vec2>) -> Vec<Vec2> {
         polygon.reverse();
     }
     polygon
-}
-
-/// The convex hull, counter-clockwise (Andrew 1979, monotone chain).
-fn hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
-    points.sort_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
-    let mut chain: Vec<Vec2> = Vec::with_capacity(2 * points.len());
-    let mut half = |points: &mut dyn Iterator<Item = &Vec2>| {
-        let start = chain.len();
-        for x in points {
-            while let [.., p, q] = chain[start..]
-                && (q - p).perp_dot(*x - q) <= 0.0
-            {
-                chain.pop();
-            }
-            chain.push(*x);
-        }
-        chain.pop();
-    };
-    half(&mut points.iter());
-    half(&mut points.iter().rev());
-    chain
 }

@@ -1,6 +1,6 @@
 //! The convex hull of points in space, and in a plane.
 
-use super::Vec3;
+use super::{Vec2, Vec3};
 use robust::{Coord3D, orient3d};
 use std::collections::BTreeSet;
 
@@ -28,36 +28,43 @@ pub fn convex_hull(points: &[Vec3]) -> Vec<[usize; 3]> {
     faces
 }
 
-/// Corners of the convex hull of points of one plane with this unit normal, counter-clockwise about it. Orientations are decided on a
-/// grid of 2⁵⁰ steps across the points, exactly: rounding folds no side. Source: Andrew (1979), the monotone chain. Cost O(n log n).
+/// Corners of the convex hull of points of one plane with this unit normal, counter-clockwise about it. Cost O(n log n).
 pub fn convex_hull_in_plane(points: impl Iterator<Item = Vec3> + Clone, normal: Vec3) -> Vec<Vec3> {
     let Some(origin) = points.clone().next() else { return Vec::new() };
     let right = normal.any_orthonormal_vector();
     let up = normal.cross(right);
-    let reach = points.clone().map(|p| (p - origin).abs().max_element()).fold(f64::MIN_POSITIVE, f64::max);
+    let flat = |p: Vec3| Vec2::new(right.dot(p - origin), up.dot(p - origin));
+    chain(points.map(|p| (flat(p), p)))
+}
+
+/// The convex hull of points of the plane, counter-clockwise, each with what comes with it. Orientations are decided on a grid of 2⁵⁰ steps
+/// across the points, exactly: rounding folds no side. Source: Andrew (1979), the monotone chain. Cost O(n log n).
+pub(super) fn chain<T: Copy>(points: impl Iterator<Item = (Vec2, T)> + Clone) -> Vec<T> {
+    let Some((origin, _)) = points.clone().next() else { return Vec::new() };
+    let reach = points.clone().map(|(x, _)| (x - origin).abs().max_element()).fold(f64::MIN_POSITIVE, f64::max);
     let step = |x: f64| (x / reach * (1u64 << 49) as f64) as i64;
-    let mut sorted: Vec<(i64, i64, Vec3)> =
-        points.map(|p| (step(right.dot(p - origin)), step(up.dot(p - origin)), p)).collect();
+    let mut sorted: Vec<(i64, i64, T)> =
+        points.map(|(x, of)| (step(x.x - origin.x), step(x.y - origin.y), of)).collect();
     sorted.sort_by_key(|(x, y, _)| (*x, *y));
     sorted.dedup_by_key(|(x, y, _)| (*x, *y));
-    let turns_left = |a: &(i64, i64, Vec3), b: &(i64, i64, Vec3), c: &(i64, i64, Vec3)| {
+    let turns_left = |a: &(i64, i64, T), b: &(i64, i64, T), c: &(i64, i64, T)| {
         i128::from(b.0 - a.0) * i128::from(c.1 - b.1) > i128::from(b.1 - a.1) * i128::from(c.0 - b.0)
     };
-    let chain = |points: &mut dyn Iterator<Item = &(i64, i64, Vec3)>| {
-        let mut chain: Vec<(i64, i64, Vec3)> = Vec::new();
+    let half = |points: &mut dyn Iterator<Item = &(i64, i64, T)>| {
+        let mut half: Vec<(i64, i64, T)> = Vec::new();
         for point in points {
-            while let [.., a, b] = &chain[..]
+            while let [.., a, b] = &half[..]
                 && !turns_left(a, b, point)
             {
-                chain.pop();
+                half.pop();
             }
-            chain.push(*point);
+            half.push(*point);
         }
-        chain.pop();
-        chain
+        half.pop();
+        half
     };
-    let (lower, upper) = (chain(&mut sorted.iter()), chain(&mut sorted.iter().rev()));
-    lower.into_iter().chain(upper).map(|(_, _, p)| p).collect()
+    let (lower, upper) = (half(&mut sorted.iter()), half(&mut sorted.iter().rev()));
+    lower.into_iter().chain(upper).map(|(_, _, of)| of).collect()
 }
 
 /// Four points with room between them, the first three counter-clockwise seen from outside.

@@ -1,6 +1,6 @@
 //! Which polygons lie in one plane.
 
-use super::{Polygon, Vec3};
+use super::{DisjointSets, Polygon, Vec3};
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Signed height of a point above the plane through `on_plane`; zero within the rounding of the coordinates.
@@ -15,7 +15,7 @@ pub fn height(normal: Vec3, on_plane: Vec3, point: Vec3) -> f64 {
 const KEY_RESOLUTION: f64 = 1e-8;
 
 /// A number for every polygon, equal where two lie in one plane (facing alike or opposite) to within the rounding of their
-/// coordinates: the number of one of them.
+/// coordinates: the least number of those in it.
 ///
 /// Among planes that nearly coincide, every polygon is held against the largest of each plane found so far, whose normal is known
 /// best. Cost O(n log n), unless very many planes nearly coincide.
@@ -34,7 +34,7 @@ pub fn group_by_plane(polygons: &[&Polygon]) -> Vec<u32> {
     keys.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
 
     // Among neighbours, largest first, join each to the planes that it lies in.
-    let mut parent: Vec<usize> = (0..polygons.len()).collect();
+    let mut joined = DisjointSets::new(polygons.len());
     for run in keys.chunk_by_mut(|a, b| b.0 - a.0 < KEY_RESOLUTION) {
         run.sort_by(|a, b| polygons[b.1].area().total_cmp(&polygons[a.1].area()).then(a.1.cmp(&b.1)));
         let mut planes: Vec<Plane> = Vec::new();
@@ -42,23 +42,14 @@ pub fn group_by_plane(polygons: &[&Polygon]) -> Vec<u32> {
             let mut is_new = true;
             for plane in planes.iter().filter(|plane| plane.holds(polygons[i])) {
                 is_new = false;
-                let (a, b) = (root(&mut parent, i), root(&mut parent, plane.of));
-                parent[a.max(b)] = a.min(b);
+                joined.join(i, plane.of);
             }
             if is_new {
                 planes.push(Plane::of(i, polygons[i]));
             }
         }
     }
-    (0..polygons.len()).map(|i| root(&mut parent, i) as u32).collect()
-}
-
-fn root(parent: &mut [usize], mut i: usize) -> usize {
-    while parent[i] != i {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    i
+    (0..polygons.len()).map(|i| joined.least(i) as u32).collect()
 }
 
 /// The plane of a polygon, and how far it can be trusted.

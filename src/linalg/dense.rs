@@ -49,6 +49,12 @@ impl Dense {
         dense
     }
 
+    /// From its entries, row after row.
+    pub(super) fn from_values(n_rows: usize, n_columns: usize, values: Vec<f64>) -> Self {
+        assert_eq!(values.len(), n_rows * n_columns);
+        Self { n_rows, n_columns, values }
+    }
+
     /// One band of any operator, written out: row by row, in parallel.
     pub fn from_operator(operator: &dyn LinearOperator, band: usize) -> Self {
         let mut dense = Self::zeros(operator.n_rows(), operator.n_columns());

@@ -7,6 +7,7 @@ mod provenance;
 mod refinement;
 mod repairs;
 mod run;
+mod sensitivity;
 mod watch;
 
 pub use error::StudyError;
@@ -18,4 +19,5 @@ pub use outcome::{
 pub use provenance::Provenance;
 pub use refinement::surface_means;
 pub use run::{StudySettings, run, tessellations};
+pub use sensitivity::{Quantity, SensitivityOutcome, Sensor, SurfaceSensitivity, sensitivity, weights};
 pub use watch::Watch;

@@ -89,8 +89,10 @@ pub struct SolverRun {
     pub solver: String,
     /// "direct" or "iterative".
     pub kind: String,
-    /// Why it stopped, as one word: "direct", "converged", "budget", "stagnated".
+    /// Why it stopped, as one word: "direct", "converged", "budget", "stagnated", "refused".
     pub stop: String,
+    /// What it said where it refused the equation; its other numbers are not numbers then.
+    pub refusal: Option<String>,
     pub n_applies: usize,
     pub n_adjoint_applies: usize,
     /// Work in units of one product with K (entries touched / entries of K): Gauss–Seidel and Southwell touch entries, not products.
@@ -104,6 +106,26 @@ pub struct SolverRun {
     pub error_bound: Option<f64>,
     /// Empty for direct methods.
     pub history: Vec<HistoryPoint>,
+}
+
+impl SolverRun {
+    /// A method that could not claim the equation, in its own words.
+    pub fn refused(solver: &str, kind: String, seconds: f64, refusal: String) -> Self {
+        Self {
+            solver: solver.to_string(),
+            kind,
+            stop: "refused".to_string(),
+            refusal: Some(refusal),
+            n_applies: 0,
+            n_adjoint_applies: 0,
+            products: f64::NAN,
+            seconds,
+            true_residual: f64::NAN,
+            error: f64::NAN,
+            error_bound: None,
+            history: Vec::new(),
+        }
+    }
 }
 
 /// One iteration.

@@ -22,6 +22,8 @@ use std::time::Instant;
 pub struct StudySettings {
     /// Of the finest mesh; the refinement levels double it.
     pub resolution: Resolution,
+    /// Names of the methods that solve it, a direct one first: the reference.
+    pub solvers: Vec<String>,
     /// Meshes compared, the finest included; three show an order.
     pub n_levels: usize,
     /// On ‖E + K L − L‖∞ / ‖E‖∞ of every iterative solver.
@@ -43,8 +45,8 @@ pub struct StudySettings {
 /// Runs the study. `watch` hears which stage is at work and how far it is.
 ///
 /// # Errors
-/// A scene that cannot be cut or assembled, or a direct solve that fails: without a reference there is no study. An iterative
-/// method that fails is an error too, for it should not.
+/// A scene that cannot be cut or assembled, or a first solve that fails: without a reference there is no study. What another method
+/// refuses is recorded.
 pub fn run(
     scene: &Scene,
     settings: &StudySettings,
@@ -59,7 +61,7 @@ pub fn run(
     let laws = system.laws();
 
     // Solve it by every method.
-    let methods = solver::all(settings.tolerance);
+    let methods: Vec<_> = settings.solvers.iter().filter_map(|name| solver::named(name, settings.tolerance)).collect();
     let (reference_solver, truth, solvers) = stages.time("solve", |progress| solve_all(&methods, &system, progress))?;
     let repairs = stages.time("repairs", |progress| repairs::compare(&system, settings.tolerance, &truth, progress));
     let truncation = stages.time("truncate", |_| truncate(&system, &truth, 60));
@@ -160,7 +162,7 @@ pub fn tessellations(scene: &Scene) -> Vec<String> {
     scene.surfaces().iter().filter_map(sentence).collect()
 }
 
-/// Runs every method; the first direct one is the reference that the histories of all are held against.
+/// Runs every method; the first is the reference that the histories of all are held against.
 fn solve_all(
     methods: &[Box<dyn Solver>],
     system: &System,
@@ -184,13 +186,23 @@ fn solve_all(
             watching += paused.elapsed().as_secs_f64();
             ControlFlow::Continue(())
         };
-        let solution = method.solve(system.equation(), &mut record)?;
+        let solved = method.solve(system.equation(), &mut record);
         let seconds = start.elapsed().as_secs_f64() - watching;
+        let kind = if method.is_direct() { "direct" } else { "iterative" }.to_string();
+        let solution = match solved {
+            Ok(solution) => solution,
+            Err(error) if reference.is_some() => {
+                runs.push(SolverRun::refused(method.name(), kind, seconds, error.to_string()));
+                continue;
+            }
+            Err(error) => return Err(error.into()),
+        };
         let report = &solution.report;
         runs.push(SolverRun {
             solver: method.name().to_string(),
-            kind: if method.is_direct() { "direct" } else { "iterative" }.to_string(),
+            kind,
             stop: report.stop.to_string(),
+            refusal: None,
             n_applies: report.n_applies,
             n_adjoint_applies: report.n_adjoint_applies,
             products: report.products,

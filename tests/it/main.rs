@@ -5,6 +5,7 @@
 
 mod check;
 mod cli;
+mod closure;
 mod compare;
 mod defects;
 mod enclosure;
@@ -16,6 +17,7 @@ mod format;
 mod gallery;
 mod image;
 mod laws;
+mod matrices;
 mod medium;
 mod operators;
 mod orbits;

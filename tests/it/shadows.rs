@@ -57,7 +57,7 @@ fn integrated_pairs_match_the_reference_to_the_tolerance() {
 
 /// The Cornell box with a front wall. Both its boxes end on the floor, which closes them, and what is inside them and above the lamp takes
 /// part too: no light is lost, and closure needs no samples.
-fn closed_cornell_box() -> Scene {
+pub fn closed_cornell_box() -> Scene {
     let mut description: SceneDescription = gallery::cornell_box().description().clone();
     description.camera = None;
     let mut front = description.surfaces[2].clone();

@@ -26,7 +26,7 @@ use crate::sampling::mix;
 use crate::scene::Scene;
 use flow::{Means, Tally};
 use rayon::prelude::*;
-use sinks::{Lost, Sink};
+use sinks::{Backs, Lost, Sink};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use visibility::{Clusters, Desk, End, Obstacles};
 
@@ -133,9 +133,10 @@ pub(super) fn compute(
 ) -> Result<Assembled, Overfull> {
     // Name everything that light can end on: patches, and of sinks those that are computed like patches.
     let facets: Vec<&Polygon> = (0..scene.facets().len()).map(|facet| scene.polygon(facet)).collect();
+    let backs = Backs::new(scene, &facets);
     let sinks = match settings.occlusion {
         Occlusion::Sampled { .. } => Vec::new(),
-        Occlusion::Exact { .. } => sinks::of_scene(scene, &facets),
+        Occlusion::Exact { .. } => sinks::of_scene(&backs, &facets),
     };
     let planes: Vec<&Polygon> = facets.iter().copied().chain(sinks.iter().filter_map(Sink::opening)).collect();
     let obstacles = Obstacles::new(&planes);
@@ -171,7 +172,7 @@ pub(super) fn compute(
         Occlusion::Sampled { sink_rays, .. } => {
             let everything = Tracer::new(&facets);
             let key = |i| mix(&[settings.seed, 1, i as u64]);
-            let rays = |i| sinks::lost_by_rays(scene, &everything, ends[i], sink_rays, key(i));
+            let rays = |i| sinks::lost_by_rays(&backs, &everything, ends[i], sink_rays, key(i));
             (0..n).into_par_iter().map(rays).collect()
         }
     };

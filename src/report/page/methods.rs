@@ -44,8 +44,12 @@ pub fn solvers(outcome: &StudyOutcome, on_page: &FigureOnPage) -> String {
         "Error and residual of every iterative solver against products with K, logarithmic",
         "Error ‖L − L*‖∞ / ‖L*‖∞ against the direct solution L*, and residual ‖E + K L − L‖∞ / ‖E‖∞ against work, in products with K.",
     );
-    let caption = "Every solver; work in products with K: entries touched over entries of K. Residual, error and bound are relative.";
-    section("solvers", "Solvers", &lead, &(shown + &table.html(caption)))
+    let refusals = outcome.solvers.iter().filter_map(|run| run.refusal.as_ref());
+    let refusals: String = refusals.map(|refusal| format!(" Refused: {refusal}.")).collect();
+    let caption = format!(
+        "Every solver; work in products with K: entries touched over entries of K. Residual, error and bound are relative.{refusals}"
+    );
+    section("solvers", "Solvers", &lead, &(shown + &table.html(&caption)))
 }
 
 /// Truncation figure.

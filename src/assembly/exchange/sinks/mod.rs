@@ -2,15 +2,17 @@
 //!
 //! Either as exchange with openings and backs, like that of any two patches; or counted by rays.
 
+mod backs;
+mod cut;
 mod openings;
+
+pub use backs::Backs;
 
 use super::Entry;
 use super::visibility::End;
 use crate::geometry::{Frame, Polygon, Ray, Tracer, Vec3, height};
-use crate::sampling::{Kronecker, mix};
-use crate::scene::{Scene, Side};
+use crate::sampling::{Kronecker, mix, warp};
 use openings::openings;
-use std::f64::consts::TAU;
 
 /// Étendue of a patch, m² sr.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,13 +40,13 @@ impl Sink {
     }
 }
 
-/// The openings of a scene and its black backs.
-pub fn of_scene(scene: &Scene, facets: &[&Polygon]) -> Vec<Sink> {
-    let backs = (0..facets.len()).filter(|facet| scene.surface_of(*facet).brdf(Side::Back).is_none());
-    let backs = backs.map(|facet| Sink { polygon: facets[facet].flipped(), plane: facet, is_opening: false });
+/// The openings of a scene, and what is seen of its black backs.
+pub fn of_scene(backs: &Backs, facets: &[&Polygon]) -> Vec<Sink> {
+    let back = |facet| move |polygon| Sink { polygon, plane: facet, is_opening: false };
+    let of_backs = backs.facets().flat_map(|facet| backs.seen(facet).into_iter().map(back(facet)));
     let openings = openings(facets).into_iter().enumerate();
     let openings = openings.map(|(k, polygon)| Sink { polygon, plane: facets.len() + k, is_opening: true });
-    backs.chain(openings).collect()
+    of_backs.chain(openings).collect()
 }
 
 /// Adds up the exchange of a patch with sinks. What has nothing in front of it loses all.
@@ -62,30 +64,30 @@ pub fn lost_to(sinks: &[Sink], facets: &[&Polygon], patch: End, lost: &[Entry]) 
     sum
 }
 
-/// Follows `n_rays` rays uniform in étendue from the patch to where they first meet something. The variance is binomial: an upper bound
-/// for points spread evenly.
-pub fn lost_by_rays(scene: &Scene, tracer: &Tracer, patch: End, n_rays: usize, key: u64) -> Lost {
+/// Follows `n_rays` rays uniform in étendue from the patch to where they first meet something.
+///
+/// The variance is binomial, an upper bound for points spread evenly, with half a ray added to each outcome, so that no finite number of
+/// rays claims certainty.
+pub fn lost_by_rays(backs: &Backs, tracer: &Tracer, patch: End, n_rays: usize, key: u64) -> Lost {
     let frame = Frame::about(patch.polygon.normal());
     let points = Kronecker::<4>::new(mix(&[key]));
     let (mut escaped, mut darkened) = (0usize, 0usize);
     for k in 0..n_rays {
         let [u0, u1, u2, u3] = points.point(k);
-        // Uniform in projected solid angle: a point of the unit disk, lifted.
-        let (sine, azimuth) = (u2.sqrt(), TAU * u3);
-        let local = Vec3::new(sine * azimuth.cos(), sine * azimuth.sin(), (1.0 - u2).sqrt());
-        let ray = Ray { origin: patch.polygon.sample([u0, u1]), direction: frame.to_world(local) };
+        let direction = frame.to_world(Vec3::from_array(warp::cosine_hemisphere([u2, u3])));
+        let ray = Ray { origin: patch.polygon.sample([u0, u1]), direction };
         match tracer.closest(&ray, Some(patch.facet)) {
             None => escaped += 1,
-            Some(hit) if !hit.front && scene.surface_of(hit.polygon).brdf(Side::Back).is_none() => darkened += 1,
+            Some(hit) if !hit.front && backs.is_dark(hit.polygon, ray.origin + hit.t * direction) => darkened += 1,
             Some(_) => {}
         }
     }
     let n = n_rays as f64;
-    let share = (escaped + darkened) as f64 / n;
     let weight = patch.etendue / n;
+    let hedged = ((escaped + darkened) as f64 + 0.5) / (n + 1.0);
     Lost {
         escaped: weight * escaped as f64,
         darkened: weight * darkened as f64,
-        variance: share * (1.0 - share) * patch.etendue * weight,
+        variance: hedged * (1.0 - hedged) * patch.etendue * weight,
     }
 }

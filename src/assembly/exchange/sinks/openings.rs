@@ -3,11 +3,8 @@
 //! Between two points of the scene a ray stays inside the hull, so what leaves a patch for good passes an opening, and what passes an
 //! opening never comes back: étendue that escapes is exchange with the openings, and is computed like any other.
 
-use crate::assembly::exchange::pair::{Half, above};
+use super::cut::{SEAM, uncovered};
 use crate::geometry::{Polygon, Vec3, convex_hull, convex_hull_in_plane, group_by_plane, height};
-
-/// Openings smaller than this share of the hull are seams between surfaces that meet within the rounding of their corners.
-const SEAM: f64 = 1e-12;
 
 /// The uncovered parts of the hull's faces, fronts inward. Cost O(corners · hull faces).
 pub fn openings(facets: &[&Polygon]) -> Vec<Polygon> {
@@ -27,12 +24,8 @@ pub fn openings(facets: &[&Polygon]) -> Vec<Polygon> {
         let joined = (k..all.len()).filter(|t| planes[*t] as usize == k).flat_map(|t| all[t].vertices()).copied();
         let Ok(face) = Polygon::new(convex_hull_in_plane(joined, first.normal())) else { continue };
         let face = face.flipped();
-        let mut left = vec![face.vertices().to_vec()];
-        for facet in facets.iter().filter(|facet| covers(facet, &face)) {
-            left = left.into_iter().flat_map(|piece| outside(piece, facet)).collect();
-        }
-        let pieces = left.into_iter().filter_map(|piece| Polygon::new(piece).ok());
-        found.extend(pieces.filter(|piece| piece.area() > SEAM * hull));
+        let covers = facets.iter().copied().filter(|facet| covers(facet, &face));
+        found.extend(uncovered(&face, covers, SEAM * hull));
     }
     found
 }
@@ -42,31 +35,6 @@ pub fn openings(facets: &[&Polygon]) -> Vec<Polygon> {
 fn covers(facet: &Polygon, face: &Polygon) -> bool {
     let (large, small) = if facet.area() > face.area() { (facet, face) } else { (face, facet) };
     small.vertices().iter().all(|v| height(large.normal(), large.centroid(), *v) == 0.0)
-}
-
-/// What of a convex piece lies outside a facet in its plane: convex pieces.
-fn outside(piece: Vec<Vec3>, facet: &Polygon) -> Vec<Vec<Vec3>> {
-    let v = facet.vertices();
-    let mut left = Vec::new();
-    let mut rest = piece;
-    for k in 0..v.len() {
-        let outward = (v[(k + 1) % v.len()] - v[k]).cross(facet.normal()).normalize();
-        match above(&rest, v[k], outward) {
-            Half::Behind => {}
-            Half::InFront => {
-                left.push(rest);
-                return left;
-            }
-            Half::Part(part) => {
-                left.push(part);
-                match above(&rest, v[k], -outward) {
-                    Half::Part(part) => rest = part,
-                    Half::Behind | Half::InFront => return left,
-                }
-            }
-        }
-    }
-    left
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The facets of a scene joined into convex bodies.
 
 use super::body::{Body, Plane, Rim};
-use crate::geometry::{Polygon, Tracer, Vec3, height};
+use crate::geometry::{DisjointSets, Polygon, Tracer, Vec3, height};
 use std::collections::HashMap;
 
 /// Solids of more facets are left in pieces: proving one convex costs facets times corners.
@@ -14,6 +14,8 @@ pub struct Bodies {
     body_of: Vec<u32>,
     /// The flat body of every handle alone; the same where it is no part of a larger one.
     facet_of: Vec<u32>,
+    /// The face of its body that every handle is part of.
+    face_of: Vec<u32>,
 }
 
 impl Bodies {
@@ -28,14 +30,18 @@ impl Bodies {
             })
             .collect();
         let mut owner: Vec<u32> = (0..polygons.len() as u32).collect();
-        for (members, body) in Joints::of(polygons).bodies() {
-            members.iter().for_each(|&facet| owner[facet] = bodies.len() as u32);
+        let mut face: Vec<u32> = vec![0; polygons.len()];
+        for Joined { members, body } in Joints::of(polygons).bodies() {
+            for (facet, number) in members {
+                (owner[facet], face[facet]) = (bodies.len() as u32, number);
+            }
             bodies.push(body);
         }
         let ids: Vec<usize> = (0..tracer.n_polygons() as u32).map(|handle| tracer.polygon_of(handle)).collect();
         let body_of = ids.iter().map(|&id| owner[id]).collect();
         let facet_of = ids.iter().map(|&id| id as u32).collect();
-        Self { bodies, body_of, facet_of }
+        let face_of = ids.iter().map(|&id| face[id]).collect();
+        Self { bodies, body_of, facet_of, face_of }
     }
 
     /// The body that the polygon with this handle belongs to.
@@ -46,6 +52,11 @@ impl Bodies {
     /// The body of this polygon alone.
     pub fn facet_of(&self, handle: u32) -> u32 {
         self.facet_of[handle as usize]
+    }
+
+    /// The face of its body that this polygon is part of.
+    pub fn face_of(&self, handle: u32) -> u32 {
+        self.face_of[handle as usize]
     }
 
     pub fn get(&self, body: u32) -> &Body {
@@ -61,14 +72,21 @@ struct Side {
     neighbour: Option<usize>,
 }
 
+/// A body of several facets.
+struct Joined {
+    /// Facets, each with its face.
+    members: Vec<(usize, u32)>,
+    body: Body,
+}
+
 /// How facets hang together.
 struct Joints<'a> {
     polygons: &'a [&'a Polygon],
     sides: Vec<Vec<Side>>,
     /// Facets joined without bending share a number.
-    flat: Forest,
+    flat: DisjointSets,
     /// Facets joined at all share a number.
-    solid: Forest,
+    solid: DisjointSets,
     /// Heights that are rounding.
     grain: f64,
 }
@@ -88,7 +106,7 @@ impl<'a> Joints<'a> {
                 run.entry((bits(from), bits(to))).and_modify(|entry| entry.1 += 1).or_insert((facet, 1));
             }
         }
-        let (mut flat, mut solid) = (Forest::new(polygons.len()), Forest::new(polygons.len()));
+        let (mut flat, mut solid) = (DisjointSets::new(polygons.len()), DisjointSets::new(polygons.len()));
         let sides = polygons
             .iter()
             .enumerate()
@@ -114,9 +132,9 @@ impl<'a> Joints<'a> {
     }
 
     /// The bodies of more than one facet.
-    fn bodies(mut self) -> Vec<(Vec<usize>, Body)> {
+    fn bodies(mut self) -> Vec<Joined> {
         let n = self.polygons.len();
-        let (solid, flat): (Vec<usize>, Vec<usize>) = (0..n).map(|i| (self.solid.root(i), self.flat.root(i))).unzip();
+        let (solid, flat): (Vec<usize>, Vec<usize>) = (0..n).map(|i| (self.solid.least(i), self.flat.least(i))).unzip();
         let gather = |roots: &[usize], of: &[usize]| {
             let mut groups: HashMap<usize, Vec<usize>> = HashMap::new();
             of.iter().for_each(|&facet| groups.entry(roots[facet]).or_default().push(facet));
@@ -127,14 +145,14 @@ impl<'a> Joints<'a> {
         let everything: Vec<usize> = (0..n).collect();
         let mut found = Vec::new();
         for members in gather(&solid, &everything) {
-            if let Some(body) = self.solid_of(&members, &flat) {
-                found.push((members, body));
+            if let Some(solid) = self.solid_of(&members, &flat) {
+                found.push(solid);
                 continue;
             }
             // Settle for its faces, where they are cut into patches.
             for face in gather(&flat, &members) {
                 if let Some(body) = self.face_of(&face) {
-                    found.push((face, body));
+                    found.push(Joined { members: face.into_iter().map(|facet| (facet, 0)).collect(), body });
                 }
             }
         }
@@ -142,7 +160,7 @@ impl<'a> Joints<'a> {
     }
 
     /// The polyhedron of these facets, if it is convex and closed, or closed by one more face.
-    fn solid_of(&self, members: &[usize], flat: &[usize]) -> Option<Body> {
+    fn solid_of(&self, members: &[usize], flat: &[usize]) -> Option<Joined> {
         if members.len() > LARGEST {
             return None;
         }
@@ -193,7 +211,8 @@ impl<'a> Joints<'a> {
         if faces.iter().any(|face| corners.iter().any(|v| face.height(*v) > self.grain)) {
             return None;
         }
-        Some(Body::new(faces, straight(rims), corners, opening))
+        let members = members.iter().map(|&facet| (facet, numbers[&flat[facet]])).collect();
+        Some(Joined { members, body: Body::new(faces, straight(rims), corners, opening) })
     }
 
     /// The polygon that these coplanar facets make, if it is convex.
@@ -301,26 +320,4 @@ fn is_flat(a: &Polygon, b: &Polygon, grain: f64) -> bool {
     let within =
         |p: &Polygon, q: &Polygon| p.vertices().iter().all(|v| height(q.normal(), q.centroid(), *v).abs() <= grain);
     a.normal().dot(b.normal()) > 0.0 && within(a, b) && within(b, a)
-}
-
-/// Disjoint sets.
-struct Forest(Vec<usize>);
-
-impl Forest {
-    fn new(n: usize) -> Self {
-        Self((0..n).collect())
-    }
-
-    fn root(&mut self, mut i: usize) -> usize {
-        while self.0[i] != i {
-            self.0[i] = self.0[self.0[i]];
-            i = self.0[i];
-        }
-        i
-    }
-
-    fn join(&mut self, i: usize, j: usize) {
-        let (a, b) = (self.root(i), self.root(j));
-        self.0[a.max(b)] = a.min(b);
-    }
 }

@@ -1,5 +1,6 @@
 //! Convex obstacles: what a ray has to pass is asked of their outline, not of every facet.
 
+use super::cells::{Line, Pieces, grain};
 use crate::geometry::{Vec3, height};
 
 /// A convex polyhedron, or a flat convex polygon, which is one with two opposite faces.
@@ -8,6 +9,8 @@ pub struct Body {
     /// Planes of its faces, normals outward.
     pub faces: Vec<Plane>,
     pub rims: Vec<Rim>,
+    /// The rims of every face.
+    rims_of: Vec<Vec<u32>>,
     pub corners: Vec<Vec3>,
     /// A ball around the corners.
     pub centre: Vec3,
@@ -81,7 +84,38 @@ impl Body {
     pub fn new(faces: Vec<Plane>, rims: Vec<Rim>, corners: Vec<Vec3>, opening: Option<usize>) -> Self {
         let centre = corners.iter().copied().sum::<Vec3>() / corners.len() as f64;
         let radius = corners.iter().map(|v| v.distance(centre)).fold(0.0, f64::max);
-        Self { faces, rims, corners, centre, radius, opening }
+        let mut rims_of = vec![Vec::new(); faces.len()];
+        for (number, rim) in rims.iter().enumerate() {
+            rim.faces.iter().for_each(|face| rims_of[*face as usize].push(number as u32));
+        }
+        Self { faces, rims, rims_of, corners, centre, radius, opening }
+    }
+
+    /// The edges of a face, counter-clockwise about it.
+    pub fn edges_of(&self, face: usize) -> impl Iterator<Item = (Vec3, Vec3)> {
+        self.rims_of[face].iter().map(move |&number| {
+            let rim = &self.rims[number as usize];
+            if rim.faces[0] as usize == face { (rim.from, rim.to) } else { (rim.to, rim.from) }
+        })
+    }
+
+    /// True if some of a polygon lies inside.
+    pub fn holds(&self, polygon: &[Vec3]) -> bool {
+        let (mut inside, mut spare) = (Pieces::default(), Pieces::default());
+        inside.add(polygon);
+        for face in &self.faces {
+            spare.clear();
+            let line = Line { normal: face.normal, point: face.point };
+            for piece in inside.iter() {
+                if face.lie(piece) != Lie::Below {
+                    line.keep(piece, -1.0, grain(piece), &mut spare);
+                } else {
+                    spare.add(piece);
+                }
+            }
+            std::mem::swap(&mut inside, &mut spare);
+        }
+        inside.iter().next().is_some()
     }
 
     /// True if no corner lies above the plane.

@@ -5,6 +5,15 @@ use crate::geometry::Vec3;
 /// Corners closer to a line than this, relative to the size of their polygon, lie on it: thinner slivers carry nothing.
 const SLIVER: f64 = 1e-10;
 
+/// Corners no further than this from a plane, relative to the size of their polygon, are left in it: the sides that rounding would make
+/// there have no direction.
+const GRAIN: f64 = 1e-13;
+
+/// Heights of this polygon's corners over a plane that are none.
+pub fn grain(polygon: &[Vec3]) -> f64 {
+    GRAIN * polygon.iter().map(|v| v.distance_squared(polygon[0])).fold(0.0, f64::max).sqrt()
+}
+
 /// Convex polygons in one allocation.
 #[derive(Clone, Default)]
 pub struct Pieces {
@@ -55,9 +64,17 @@ impl Line {
         self.normal.dot(x - self.point)
     }
 
+    /// Heights that count as none: those of a sliver, or what rounding makes of zero. Of a function that vanishes all over the polygon's
+    /// plane nothing else is left.
+    fn grain(&self, polygon: &[Vec3], slope: f64, size: f64) -> f64 {
+        let reach = self.point.distance(polygon[0]) + size;
+        let rounding = 8.0 * f64::EPSILON * (reach + self.point.abs().max_element()) * self.normal.length();
+        (SLIVER * size * slope).max(rounding)
+    }
+
     /// Where the line enters and leaves a convex polygon, if it crosses it by more than a sliver.
     pub fn chord(&self, polygon: &[Vec3], slope: f64, size: f64) -> Option<[Vec3; 2]> {
-        let sliver = SLIVER * size * slope;
+        let sliver = self.grain(polygon, slope, size);
         let (mut above, mut below) = (false, false);
         let mut ends = [None; 2];
         let mut from = polygon[polygon.len() - 1];
@@ -80,7 +97,7 @@ impl Line {
 
     /// Adds the one or two parts of a convex polygon on either side.
     pub fn split(&self, polygon: &[Vec3], slope: f64, size: f64, into: &mut Pieces) {
-        let sliver = SLIVER * size * slope;
+        let sliver = self.grain(polygon, slope, size);
         let (mut above, mut below) = (false, false);
         for v in polygon {
             let height = self.at(*v);

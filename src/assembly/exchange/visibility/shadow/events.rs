@@ -10,14 +10,24 @@ pub fn find(part: &[Vec3], target: &[Vec3], edges: &[Edge], points: &mut Vec<Vec
     if edges.is_empty() {
         return;
     }
-    let normal = (part[1] - part[0]).cross(part[2] - part[0]).normalize_or_zero();
-    let size = size_of(part);
+    let (normal, size) = (normal_of(part), size_of(part));
 
     // Where an obstacle's edge passes a corner of the target.
     for (e, edge) in edges.iter().enumerate() {
         for &corner in target {
             let others = edges.iter().enumerate().filter(|(other, _)| *other != e).map(|(_, edge)| *edge);
             add(part, normal, size, edge, corner, others, lines);
+        }
+    }
+    // Where an edge passes all of a side at once, or of another edge, because both lie in one plane.
+    for (e, edge) in edges.iter().enumerate() {
+        for other in edges[e + 1..].iter().copied().filter(|other| other.owner != edge.owner).chain(sides_of(target)) {
+            let reach = [other.from, other.to].map(|y| y.distance_squared(edge.from));
+            let far = if reach[0] > reach[1] { other.from } else { other.to };
+            let (gradient, along) = (edge.height_of(far), other.to - other.from);
+            if gradient.dot(along).abs() <= COPLANAR * gradient.length() * along.length() {
+                add(part, normal, size, edge, far, std::iter::empty(), lines);
+            }
         }
     }
     if edges.len() == 1 {
@@ -43,33 +53,11 @@ pub fn find(part: &[Vec3], target: &[Vec3], edges: &[Edge], points: &mut Vec<Vec
     }
 }
 
-/// True if, seen from somewhere in a cell with these corners, three edges of different outlines may pass each other in one direction: on a
-/// curve, where what is hidden bends inside the cell. The planes through x and the edges then share a line.
-///
-/// Nine points speak for the cell. Whether the crossing is in view is not asked, so that some cells are called kinked that are not.
-pub fn is_kinked([a, b, c, d]: [Vec3; 4], target: &[Vec3], edges: &[Edge]) -> bool {
-    let owner = edges[0].owner;
-    if edges.iter().all(|edge| edge.owner == owner) {
-        return false;
-    }
-    let centre = 0.25 * (a + b + c + d);
-    let rim = [a, 0.5 * (a + b), b, 0.5 * (b + c), c, 0.5 * (c + d), d, 0.5 * (d + a)];
-    let is_met = |one: &Edge, two: &Edge, three: &Edge| {
-        let twist = |x: Vec3| three.plane_from(x).dot(one.plane_from(x).cross(two.plane_from(x)));
-        let middle = twist(centre);
-        rim.iter().any(|x| twist(*x) * middle <= 0.0)
-    };
-    edges.iter().enumerate().any(|(i, one)| {
-        edges[i + 1..].iter().enumerate().filter(|(_, two)| two.owner != one.owner).any(|(j, two)| {
-            let apart = |three: &Edge| three.owner != one.owner && three.owner != two.owner;
-            let thirds = edges[i + 2 + j..].iter().copied().chain(sides_of(target));
-            thirds.filter(apart).any(|three| is_met(one, two, &three))
-        })
-    })
-}
+/// Sine of an angle between an edge and a plane in which it is to lie.
+const COPLANAR: f64 = 1e-9;
 
 /// The sides of the target as edges that have it on their hidden side.
-fn sides_of(target: &[Vec3]) -> impl Iterator<Item = Edge> + Clone + '_ {
+pub fn sides_of(target: &[Vec3]) -> impl Iterator<Item = Edge> + Clone + '_ {
     (0..target.len()).map(|k| Edge { from: target[(k + 1) % target.len()], to: target[k], owner: TARGET })
 }
 
@@ -89,8 +77,8 @@ fn add(
     let gradient = edge.height_of(point);
     let line = Line { normal: gradient, point: edge.from };
     let slope = (gradient - normal.dot(gradient) * normal).length();
-    let Some(ends) = line.chord(part, slope, size) else { return };
-    if others.any(|other| other.never_hides(&ends, &[point])) {
+    let Some(eyes) = line.chord(part, slope, size) else { return };
+    if others.any(|other| other.is_short_of(&eyes, &[point])) {
         return;
     }
     lines.push((line, slope));
@@ -99,4 +87,9 @@ fn add(
 /// The longest extent of a polygon from its first corner.
 pub fn size_of(polygon: &[Vec3]) -> f64 {
     polygon.iter().map(|v| v.distance_squared(polygon[0])).fold(0.0, f64::max).sqrt()
+}
+
+/// The unit normal of a polygon whose first corner is none between neighbours in line.
+pub fn normal_of(polygon: &[Vec3]) -> Vec3 {
+    (polygon[1] - polygon[0]).cross(polygon[2] - polygon[0]).normalize_or_zero()
 }

@@ -35,6 +35,16 @@ impl Edge {
 
     /// On which side these points lie, seen from anywhere in the hull of `eyes`: above is hidden.
     pub fn lie(&self, eyes: &[Vec3], points: &[Vec3]) -> Lie {
+        match self.sides(eyes, points) {
+            (true, true) => Lie::Across,
+            (true, false) => Lie::Above,
+            (false, _) => Lie::Below,
+        }
+    }
+
+    /// Whether some point is above from somewhere in the hull of `eyes`, and whether some is below; once both are known to be, it looks no
+    /// further.
+    fn sides(&self, eyes: &[Vec3], points: &[Vec3]) -> (bool, bool) {
         let (mut above, mut below) = (false, false);
         let length = (self.to - self.from).length_squared();
         let reach = eyes.iter().map(|x| x.distance_squared(self.from)).fold(0.0, f64::max);
@@ -47,15 +57,21 @@ impl Edge {
                 below |= height < -flat;
             }
             if above && below {
-                return Lie::Across;
+                break;
             }
         }
-        if above { Lie::Above } else { Lie::Below }
+        (above, below)
     }
 
     /// True if none of these points is on the hidden side from anywhere in the hull of `eyes`.
     pub fn never_hides(&self, eyes: &[Vec3], points: &[Vec3]) -> bool {
         self.lie(eyes, points) == Lie::Below
+    }
+
+    /// True if the hull of these points is beyond the edge from anywhere inside the hull of `eyes`: on the other side than what is hidden,
+    /// and not all of it on the border.
+    pub fn is_short_of(&self, eyes: &[Vec3], points: &[Vec3]) -> bool {
+        self.sides(eyes, points) == (false, true)
     }
 }
 

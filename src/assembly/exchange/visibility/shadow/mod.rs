@@ -19,19 +19,27 @@
 mod bodies;
 mod body;
 mod cells;
+mod cover;
 mod cubature;
 mod events;
 mod flux;
+mod integrand;
+mod kinks;
 mod nature;
+mod outline;
+mod union;
 
 pub use bodies::Bodies;
 
 use crate::geometry::{Polygon, Vec3};
-use body::{Body, Lie, Plane};
+use body::{Lie, Plane};
 use cells::{Line, Pieces};
 use cubature::Cell;
 use flux::{Edge, Scratch};
-use nature::{distance_squared, nature};
+use integrand::Integrand;
+use kinks::Kink;
+use nature::distance_squared;
+use outline::Outline;
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -44,13 +52,6 @@ pub enum Shadow {
     Total,
     /// Takes this much away, with an error estimate, m² sr.
     Partial { blocked: f64, error: f64 },
-}
-
-/// An obstacle as one part of A sees it.
-#[derive(Clone)]
-struct Outline {
-    edges: Range<usize>,
-    fronts: Range<usize>,
 }
 
 /// One product of the sum over unions: F(x → target ∩ hidden sides of edges), with a sign.
@@ -75,11 +76,14 @@ pub struct Desk {
     lines: Vec<(Line, f64)>,
     points: Vec<Vec3>,
     chain: Vec<usize>,
+    singular: Vec<usize>,
     cells: Vec<Cell>,
     pieces: Pieces,
     spare: Pieces,
     scratch: Scratch,
+    kinks: Vec<Kink>,
     is_front: Vec<bool>,
+    faces: Vec<usize>,
     stands: [Vec<Vec3>; 2],
     n_target: usize,
     is_total: bool,
@@ -169,215 +173,16 @@ impl Desk {
             return Shadow::Clear;
         }
 
-        let Self { cells, terms, targets, active, scratch, .. } = self;
-        self.n_cells += cells.len();
-        let nature = |term: usize, corners: &[Vec3; 4]| {
-            let Term { target, edges, is_cut, .. } = &terms[term];
-            nature(corners, &targets[target.clone()], &active[edges.clone()], *is_cut)
-        };
+        self.n_cells += self.cells.len();
+        self.kinks.clear();
+        let Self { cells, terms, targets, active, scratch, kinks, .. } = self;
         let normal = stage.floor.normal;
-        let sum = cubature::integrate(cells, normal, tolerance / PI, &nature, |term, x| {
-            let Term { sign, target, edges, .. } = &terms[term];
-            sign * flux::hidden(x, normal, &targets[target.clone()], &active[edges.clone()], scratch)
-        });
-        self.n_points += sum.n_points;
+        let mut integrand = Integrand { normal, terms, targets, active, scratch, kinks, n_points: 0 };
+        let sum = cubature::integrate(cells, tolerance / PI, &mut integrand);
+        self.n_points += integrand.n_points;
         Shadow::Partial { blocked: PI * sum.value.max(0.0), error: PI * sum.error }
     }
-
-    /// Adds what these bodies hide from a convex part of the patch.
-    fn look_from(&mut self, stage: &Stage, part: &[Vec3], list: &[u32], is_whole: bool) {
-        // Cut the part where it crosses the plane of a face.
-        for &body in list {
-            for face in &stage.bodies.get(body).faces {
-                if face.lie(part) == Lie::Across {
-                    let mut halves = Pieces::default();
-                    let line = Line { normal: face.normal, point: face.point };
-                    line.keep(part, 1.0, 0.0, &mut halves);
-                    line.keep(part, -1.0, 0.0, &mut halves);
-                    if line.chord(part, 1.0, events::size_of(part)).is_none() {
-                        continue;
-                    }
-                    for half in halves.iter() {
-                        self.look_from(stage, half, list, false);
-                    }
-                    return;
-                }
-            }
-        }
-
-        // Outline every body as all of the part sees it.
-        let (first_edge, first_front) = (self.edges.len(), self.fronts.len());
-        self.outlines.clear();
-        for &body in list {
-            let obstacle = stage.bodies.get(body);
-            if !self.outline(stage, obstacle, part) {
-                // From inside, a body is no more than its facets.
-                let mut facets: Vec<u32> = list.iter().copied().filter(|other| *other != body).collect();
-                let of_body = stage.candidates.iter().filter(|handle| stage.bodies.body_of(**handle) == body);
-                facets.extend(of_body.map(|handle| stage.bodies.facet_of(*handle)));
-                self.edges.truncate(first_edge);
-                self.fronts.truncate(first_front);
-                self.look_from(stage, part, &facets, false);
-                return;
-            }
-        }
-        self.chain.clear();
-        self.add_union(part, 0..self.n_target, 0..0, 1.0, self.outlines.len(), is_whole);
-    }
-
-    /// Pushes the outline of a body that this part sees from outside; false where it does not.
-    fn outline(&mut self, stage: &Stage, body: &Body, part: &[Vec3]) -> bool {
-        let (first_edge, first_front) = (self.edges.len(), self.fronts.len());
-        self.is_front.clear();
-        for face in &body.faces {
-            let is_front = face.lie(part) == Lie::Above;
-            self.is_front.push(is_front);
-            if is_front {
-                self.fronts.push(*face);
-            }
-        }
-        let sees_front = self.fronts.len() > first_front;
-        let is_flat = body.faces.len() == 2;
-        let reaches_out = || body.excludes(&self.targets[..self.n_target], stage.target_normal);
-        if !sees_front && !is_flat {
-            // From inside a closed body nothing outside is seen.
-            if body.opening.is_some() || !reaches_out() {
-                return false;
-            }
-            self.outlines.push(Outline { edges: first_edge..first_edge, fronts: first_front..first_front });
-            return true;
-        }
-        if body.opening.is_some_and(|opening| self.is_front[opening]) && !reaches_out() {
-            return false;
-        }
-        let owner = self.outlines.len();
-        for rim in &body.rims {
-            match rim.faces.map(|face| self.is_front[face as usize]) {
-                [true, false] => self.edges.push(Edge { from: rim.to, to: rim.from, owner }),
-                [false, true] => self.edges.push(Edge { from: rim.from, to: rim.to, owner }),
-                _ => {}
-            }
-        }
-        if sees_front {
-            self.outlines.push(Outline { edges: first_edge..self.edges.len(), fronts: first_front..self.fronts.len() });
-        }
-        true
-    }
-
-    /// Adds sign · F(target ∩ hidden sides of the active edges ∩ (what the first n outlines hide)): the union of sets is the sum of each
-    /// less its intersection with those before it.
-    fn add_union(
-        &mut self,
-        part: &[Vec3],
-        target: Range<usize>,
-        active: Range<usize>,
-        sign: f64,
-        n: usize,
-        is_whole: bool,
-    ) {
-        for k in 0..n {
-            let (n_targets, n_active) = (self.targets.len(), self.active.len());
-            let Some(target) = self.restrict(part, target.clone(), active.clone(), k) else {
-                self.targets.truncate(n_targets);
-                self.active.truncate(n_active);
-                continue;
-            };
-            let active = n_active..self.active.len();
-            if is_whole && self.chain.is_empty() && active.is_empty() && target == (0..self.n_target) {
-                self.is_total = true;
-                return;
-            }
-            self.terms.push(Term { sign, target: target.clone(), edges: active.clone(), is_cut: true });
-            self.cut_into_cells(part);
-            self.chain.push(k);
-            self.add_union(part, target, active, -sign, k, false);
-            self.chain.pop();
-            if self.is_total {
-                return;
-            }
-        }
-    }
-
-    /// The target cut by the front faces of an outline, and its edges that take part added to those that do already; `None` where
-    /// nothing is hidden.
-    fn restrict(
-        &mut self,
-        part: &[Vec3],
-        target: Range<usize>,
-        active: Range<usize>,
-        k: usize,
-    ) -> Option<Range<usize>> {
-        let outline = self.outlines[k].clone();
-        // Bodies side by side hide nothing together.
-        for &other in &self.chain {
-            let other = self.outlines[other].edges.clone();
-            let apart = |one: Range<usize>, two: Range<usize>| {
-                let outside =
-                    |edge: &Edge| self.edges[two.clone()].iter().all(|corner| edge.never_hides(part, &[corner.from]));
-                !two.is_empty() && self.edges[one].iter().any(outside)
-            };
-            if apart(outline.edges.clone(), other.clone()) || apart(other, outline.edges.clone()) {
-                return None;
-            }
-        }
-
-        // What lies before a front face is not hidden.
-        let mut target = target;
-        for front in self.fronts[outline.fronts.clone()].iter() {
-            match front.lie(&self.targets[target.clone()]) {
-                Lie::Below => {}
-                Lie::Above => return None,
-                Lie::Across => {
-                    let line = Line { normal: -front.normal, point: front.point };
-                    self.spare.clear();
-                    line.keep(&self.targets[target.clone()], 1.0, 0.0, &mut self.spare);
-                    let start = self.targets.len();
-                    self.targets.extend_from_slice(self.spare.iter().next()?);
-                    target = start..self.targets.len();
-                }
-            }
-        }
-
-        // Keep the edges that pass through what is left.
-        let corners = &self.targets[target.clone()];
-        for k in active.clone().chain(outline.edges.start + active.end..outline.edges.end + active.end) {
-            let edge = if k < active.end { self.active[k] } else { self.edges[k - active.end] };
-            match edge.lie(part, corners) {
-                Lie::Below => return None,
-                Lie::Above => {}
-                Lie::Across => self.active.push(edge),
-            }
-        }
-        Some(target)
-    }
-
-    /// Cuts the part along the lines on which the last term bends, and covers what is left with cells.
-    fn cut_into_cells(&mut self, part: &[Vec3]) {
-        let Self { terms, targets, active, lines, pieces, spare, cells, points, .. } = self;
-        let number = terms.len() - 1;
-        let (target, edges) = (&targets[terms[number].target.clone()], &active[terms[number].edges.clone()]);
-        events::find(part, target, edges, points, lines);
-        pieces.clear();
-        pieces.add(part);
-        let size = events::size_of(part);
-        for (line, slope) in lines.iter().take(MOST_LINES) {
-            spare.clear();
-            for piece in pieces.iter() {
-                line.split(piece, *slope, size, spare);
-            }
-            std::mem::swap(pieces, spare);
-        }
-        let is_cut = lines.len() <= MOST_LINES;
-        let nature = |_: usize, corners: &[Vec3; 4]| nature(corners, target, edges, is_cut);
-        for piece in pieces.iter() {
-            Cell::cover(piece, number, &nature, cells);
-        }
-        terms[number].is_cut = is_cut;
-    }
 }
-
-/// More lines than this are left to refinement.
-const MOST_LINES: usize = 24;
 
 /// Lays out the part of a polygon in front of a plane; false if there is none.
 fn front(polygon: &[Vec3], plane: &Plane, part: &mut Vec<Vec3>) -> bool {
@@ -387,7 +192,7 @@ fn front(polygon: &[Vec3], plane: &Plane, part: &mut Vec<Vec3>) -> bool {
         Lie::Above => part.extend_from_slice(polygon),
         Lie::Across => {
             let mut half = Pieces::default();
-            Line { normal: plane.normal, point: plane.point }.keep(polygon, 1.0, 0.0, &mut half);
+            Line { normal: plane.normal, point: plane.point }.keep(polygon, 1.0, cells::grain(polygon), &mut half);
             part.extend(half.iter().next().into_iter().flatten());
         }
     }
