@@ -8,6 +8,7 @@ mod operators;
 mod orbits;
 mod sensitivity;
 mod system;
+mod translates;
 
 pub use exchange::{
     Enclosure, Exchange, ExchangeReport, Ladder, Nodes, Occlusion, Repair, RepairMethod, enclose, exchange_of_pair,

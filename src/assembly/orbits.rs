@@ -9,7 +9,8 @@
 //!
 //! Nothing is taken on trust: a candidate that fails for one facet is left out.
 
-use crate::basis::Bundles;
+use super::translates::Translates;
+use crate::basis::{Bundles, Patch};
 use crate::geometry::{Affine3, DisjointSets, Polygon, Vec3};
 use crate::scene::Scene;
 use std::collections::HashMap;
@@ -25,6 +26,7 @@ pub struct Orbits {
     orbit_of: Vec<Option<usize>>,
     /// The image of every bundle that takes part, a list a symmetry.
     symmetries: Vec<Vec<Option<usize>>>,
+    translates: Translates,
 }
 
 impl Orbits {
@@ -43,12 +45,12 @@ impl Orbits {
                 patches.push((2 * surface + patch.side as usize, &patch.polygon));
             }
         }
+        let (facet_places, patch_places) = (Places::new(&facets), Places::new(&patches));
         let mut alike = DisjointSets::new(chosen.len());
         let mut symmetries = Vec::new();
         for candidate in candidates {
-            let Some(images) = permutation(&facets, candidate).and_then(|_| permutation(&patches, candidate)) else {
-                continue;
-            };
+            let images = permutation(&facet_places, candidate).and_then(|_| permutation(&patch_places, candidate));
+            let Some(images) = images else { continue };
             let mut symmetry = vec![None; bundles.n_bundles()];
             for (k, image) in images.into_iter().enumerate() {
                 alike.join(k, image);
@@ -69,7 +71,22 @@ impl Orbits {
             orbit_of[bundle] = Some(orbit);
             members[orbit].push(bundle);
         }
-        Self { members, orbit_of, symmetries }
+        Self { members, orbit_of, symmetries, translates: Translates::default() }
+    }
+
+    /// The same, knowing that patches stand in rows along these steps: what passes between two that nothing stands between is then computed
+    /// for one of all pairs that differ by steps. Cost O(n) a step.
+    pub fn in_rows(self, scene: &Scene, bundles: &Bundles, steps: &[Vec3]) -> Self {
+        let patches = (0..bundles.n_bundles()).map(|bundle| bundles.patch(bundles.element_of(bundle).0));
+        let kind = |patch: &Patch| 2 * scene.facets()[patch.facet].surface + patch.side as usize;
+        let patches: Option<Vec<(usize, &Polygon)>> =
+            patches.map(|patch| patch.map(|patch| (kind(patch), &patch.polygon))).collect();
+        Self { translates: patches.map_or(Translates::default(), |patches| Translates::new(&patches, steps)), ..self }
+    }
+
+    /// The rows that patches stand in.
+    pub(super) fn translates(&self) -> &Translates {
+        &self.translates
     }
 
     /// Number of orbits.
@@ -86,8 +103,12 @@ impl Orbits {
     /// exchange as much with it. Each with their number.
     pub fn seen_from(&self, bundle: usize, orbit: usize) -> Vec<(usize, usize)> {
         let members = &self.members[orbit];
+        let stays = |symmetry: &&Vec<Option<usize>>| symmetry[bundle] == Some(bundle);
+        if !self.symmetries.iter().any(|symmetry| stays(&symmetry)) {
+            return members.iter().map(|member| (*member, 1)).collect();
+        }
         let mut alike = DisjointSets::new(members.len());
-        for symmetry in self.symmetries.iter().filter(|symmetry| symmetry[bundle] == Some(bundle)) {
+        for symmetry in self.symmetries.iter().filter(stays) {
             for (k, member) in members.iter().enumerate() {
                 let Some(image) = symmetry[*member].and_then(|image| members.binary_search(&image).ok()) else {
                     continue;
@@ -106,40 +127,57 @@ impl Orbits {
     }
 }
 
-/// The image of every polygon among polygons of the same kind; `None` if one has no image.
-fn permutation(polygons: &[(usize, &Polygon)], isometry: &Affine3) -> Option<Vec<usize>> {
-    let size = polygons.iter().flat_map(|(_, p)| p.vertices()).map(|v| v.length()).fold(f64::MIN_POSITIVE, f64::max);
-    // Look images up by their centroids, rounded to cells far above the rounding; near a border in the cells of both sides.
-    let (tolerance, cell) = (COINCIDENT * size, 1e4 * COINCIDENT * size);
-    let key = |kind: usize, p: Vec3| (kind, (p / cell).floor().to_array().map(|x| x as i64));
-    let mut index: HashMap<(usize, [i64; 3]), Vec<usize>> = HashMap::with_capacity(polygons.len());
-    for (k, (kind, polygon)) in polygons.iter().enumerate() {
-        index.entry(key(*kind, polygon.centroid())).or_default().push(k);
+/// Where polygons are: looked up by their centroids, rounded to cells far above the rounding.
+pub(super) struct Places<'a> {
+    polygons: &'a [(usize, &'a Polygon)],
+    tolerance: f64,
+    index: HashMap<(usize, [i64; 3]), Vec<usize>>,
+}
+
+impl<'a> Places<'a> {
+    /// Polygons, each of a kind.
+    pub fn new(polygons: &'a [(usize, &'a Polygon)]) -> Self {
+        let corners = polygons.iter().flat_map(|(_, polygon)| polygon.vertices());
+        let size = corners.map(|v| v.length()).fold(f64::MIN_POSITIVE, f64::max);
+        let mut places = Self { polygons, tolerance: COINCIDENT * size, index: HashMap::with_capacity(polygons.len()) };
+        for (k, (kind, polygon)) in polygons.iter().enumerate() {
+            let key = places.key(*kind, polygon.centroid());
+            places.index.entry(key).or_default().push(k);
+        }
+        places
     }
-    let image = |(kind, polygon): &(usize, &Polygon)| {
+
+    fn key(&self, kind: usize, p: Vec3) -> (usize, [i64; 3]) {
+        (kind, (p / (1e4 * self.tolerance)).floor().to_array().map(|x| x as i64))
+    }
+
+    /// The polygon of the same kind that an isometry carries this one into.
+    ///
+    /// A mirror turns the order of corners round, but fronts stay fronts: their normals are mirrored as vectors.
+    pub fn image(&self, (kind, polygon): (usize, &Polygon), isometry: &Affine3) -> Option<usize> {
         let centre = isometry.transform_point3(polygon.centroid());
         let normal = isometry.transform_vector3(polygon.normal());
         let corners: Vec<Vec3> = polygon.vertices().iter().map(|v| isometry.transform_point3(*v)).collect();
         let is_image = |k: &usize| {
-            let other = polygons[*k].1;
+            let other = self.polygons[*k].1;
             other.vertices().len() == corners.len()
                 && other.normal().dot(normal) > 0.0
-                && corners.iter().all(|v| other.vertices().iter().any(|w| w.distance(*v) <= tolerance))
+                && corners.iter().all(|v| other.vertices().iter().any(|w| w.distance(*v) <= self.tolerance))
         };
+        // Near a border between cells, look on both sides.
         let mut keys = Vec::with_capacity(1);
         for step in 0..8 {
-            let offset = Vec3::new(
-                if step & 1 == 0 { -tolerance } else { tolerance },
-                if step & 2 == 0 { -tolerance } else { tolerance },
-                if step & 4 == 0 { -tolerance } else { tolerance },
-            );
-            let key = key(*kind, centre + offset);
+            let shift = |axis: usize| if step >> axis & 1 == 0 { -self.tolerance } else { self.tolerance };
+            let key = self.key(kind, centre + Vec3::new(shift(0), shift(1), shift(2)));
             if !keys.contains(&key) {
                 keys.push(key);
             }
         }
-        keys.iter().filter_map(|key| index.get(key)).flatten().copied().find(is_image)
-    };
-    // A mirror turns the order of corners round, but fronts stay fronts: their normals are mirrored as vectors.
-    polygons.iter().map(image).collect()
+        keys.iter().filter_map(|key| self.index.get(key)).flatten().copied().find(is_image)
+    }
+}
+
+/// The image of every polygon among polygons of the same kind; `None` if one has no image.
+fn permutation(places: &Places, isometry: &Affine3) -> Option<Vec<usize>> {
+    places.polygons.iter().map(|polygon| places.image(*polygon, isometry)).collect()
 }

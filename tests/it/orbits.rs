@@ -82,3 +82,32 @@ fn what_is_no_symmetry_is_left_out_and_so_are_surfaces_that_only_stand_in_the_wa
     assert_eq!(half.n_orbits(), bundles.n_bundles() / 2);
     assert!((0..bundles.n_bundles()).filter(|bundle| half.orbit_of(*bundle).is_none()).count() == half.n_orbits());
 }
+
+/// Pairs that differ by steps are computed once: no entry changes by more than the quadrature's tolerance.
+#[test]
+fn patches_in_rows_exchange_what_they_do_one_by_one() {
+    for (scene, axes) in [
+        (gallery::parallel_plates(), vec![Vec3::X, Vec3::Y]),
+        (gallery::furnace_cube(&[0.5], &[1.0]).unwrap(), vec![Vec3::X, Vec3::Y, Vec3::Z]),
+        // Here something stands between some of those that differ by steps.
+        (gallery::corner_box(), vec![Vec3::X, Vec3::Y, Vec3::Z]),
+    ] {
+        let bundles = Bundles::new(&scene, Resolution { patch_size: 0.25, n_directions: 1 }).unwrap();
+        let orbits = Orbits::new(&scene, &bundles, |_| true, &[]);
+        // Steps that lead nowhere do no harm.
+        let steps: Vec<Vec3> = axes.iter().flat_map(|axis| [0.25 * *axis, 0.1 * *axis, Vec3::ZERO]).collect();
+        let in_rows = orbits.clone().in_rows(&scene, &bundles, &steps);
+        let [one_by_one, in_rows] = [orbits, in_rows]
+            .map(|orbits| assemble_orbits(&scene, &bundles, &orbits, &|_, _| true, settings()).unwrap().0);
+        let n = bundles.n_bundles();
+        let (mut row, mut other) = (vec![0.0; n], vec![0.0; n]);
+        for i in 0..n {
+            one_by_one.exchange().row(0, i, &mut row);
+            in_rows.exchange().row(0, i, &mut other);
+            for (a, b) in row.iter().zip(&other) {
+                // Twice the tolerance of the quadrature, and that of occlusion.
+                assert!((a - b).abs() <= 2e-13 * a + 2e-11 * one_by_one.etendue()[i], "{} {i}: {a} {b}", scene.name());
+            }
+        }
+    }
+}

@@ -3,6 +3,7 @@
 use super::pair::{Ladder, Nodes, facing, unoccluded};
 use super::visibility::{self, Desk, End, Obstacles, View, Visibility};
 use super::{Exchange, ExchangeReport, Occlusion};
+use crate::geometry::Polygon;
 use crate::sampling::mix;
 
 /// The exchange of one pair, or of some added up.
@@ -47,12 +48,26 @@ impl Means<'_> {
     ///
     /// `desk` is room to work in, and leaves no trace in the result.
     pub fn flow(&self, desk: &mut Desk, pair: [(usize, End, &Nodes); 2], view: Option<&View>) -> Option<Flow> {
-        let [(i, a, nodes_a), (j, b, nodes_b)] = pair;
-        let (one, other, tolerance) = ((a.polygon, nodes_a), (b.polygon, nodes_b), self.settings.tolerance);
-        let (whole, error) = match view {
-            Some(View::Clear { is_facing: true }) => facing(self.ladder, one, other, tolerance)?,
-            _ => unoccluded(self.ladder, one, other, tolerance)?,
-        };
+        let whole = self.whole(pair.map(|(_, end, nodes)| (end.polygon, nodes)), view)?;
+        Some(self.let_through(desk, pair.map(|(k, end, _)| (k, end)), whole, view))
+    }
+
+    /// T of two patches with nothing between them, and its error, m² sr; `None` where they do not face each other.
+    pub fn whole(&self, [a, b]: [(&Polygon, &Nodes); 2], view: Option<&View>) -> Option<(f64, f64)> {
+        match view {
+            Some(View::Clear { is_facing: true }) => facing(self.ladder, a, b, self.settings.tolerance),
+            _ => unoccluded(self.ladder, a, b, self.settings.tolerance),
+        }
+    }
+
+    /// What is let through of T between two patches by what stands between them.
+    pub fn let_through(
+        &self,
+        desk: &mut Desk,
+        [(i, a), (j, b)]: [(usize, End); 2],
+        (whole, error): (f64, f64),
+        view: Option<&View>,
+    ) -> Flow {
         let is_open = !matches!(view, Some(View::Clear { .. }));
         let tally =
             Tally { n_pairs: 1, n_open: usize::from(is_open), quadrature_error: error / whole, ..Tally::default() };
@@ -76,7 +91,7 @@ impl Means<'_> {
                 (flow.value, flow.variance) = (share * whole, variance * whole * whole);
             }
         }
-        Some(flow)
+        flow
     }
 
     /// The pair's own tolerance of occlusion, relative to the smaller étendue.

@@ -92,16 +92,19 @@ pub fn facing_squares(case: &Case) -> Result<Answers, CaseError> {
             let (albedo, exitance) = surfaces[k];
             Ok::<_, CaseError>(Body { albedo, exitance, ..Body::black(cells(polygons[k].vertices(), n)?) })
         };
-        let shape = Shape { bodies: vec![body(0)?, body(1)?], symmetries: symmetries.clone() };
+        let v = polygons[0].vertices();
+        let steps = [v[1] - v[0], v[3] - v[0]].map(|edge| edge / n as f64).to_vec();
+        let shape = Shape { bodies: vec![body(0)?, body(1)?], symmetries: symmetries.clone(), steps };
         Model::folded(shape, WHOLE, |from, to| from != to, ACCURACY)
     };
-    let limits = refine(Refinement { levels: &[2, 4, 6, 8, 12, 16, 24, 32], powers: EVEN, enough: ENOUGH }, |n| {
-        let model = model(n)?;
-        let radiance = model.radiance()?;
-        let mut values = model.gathered(&radiance, &probes);
-        values.extend(model.radiosity(&radiance));
-        Ok((values, model.radiosity_noise(&radiance)))
-    })?;
+    let limits =
+        refine(Refinement { levels: &[2, 4, 6, 8, 12, 16, 24, 32, 48, 64], powers: EVEN, enough: ENOUGH }, |n| {
+            let model = model(n)?;
+            let radiance = model.radiance()?;
+            let mut values = model.gathered(&radiance, &probes);
+            values.extend(model.radiosity(&radiance));
+            Ok((values, model.radiosity_noise(&radiance)))
+        })?;
     let names = ["corner", "edge_mid", "centre", "quarter"];
     let mut answers = Answers::new(Demand::Estimate);
     for (k, limit) in limits.iter().enumerate() {
@@ -141,7 +144,7 @@ pub fn facing_disks(case: &Case) -> Result<Answers, CaseError> {
             Ok::<_, CaseError>(Body { albedo: surfaces[k].0, exitance: surfaces[k].1, ..Body::black(polygons) })
         };
         let bodies = vec![disk(0, r1, 0.0, Facing::Left)?, disk(1, r2, h, Facing::Right)?];
-        let shape = Shape { bodies, symmetries: of_sectors(n_sectors) };
+        let shape = Shape { bodies, symmetries: of_sectors(n_sectors), ..Shape::default() };
         let model = Model::folded(shape, WHOLE, |from, to| from != to, ACCURACY)?;
         let radiance = model.radiance()?;
         let mut values = model.gathered(&radiance, &probes);
@@ -170,6 +173,7 @@ pub fn tube(case: &Case) -> Result<Answers, CaseError> {
         let shape = Shape {
             bodies: vec![Body { albedo, exitance, ..Body::black(wall) }],
             symmetries: [of_sectors(n_sectors), vec![mirror(0.5 * length * Vec3::Z, Vec3::Z)]].concat(),
+            steps: vec![length / n_rings as f64 * Vec3::Z],
         };
         let model = Model::folded(shape, WHOLE, |_, _| true, ACCURACY)?;
         let radiance = model.radiance()?;
@@ -207,7 +211,7 @@ pub fn cylindrical_cavity(case: &Case) -> Result<Answers, CaseError> {
         let base = revolve(&on_base, &sectors(n_sectors), Facing::Right)?;
         let wall = revolve(&on_wall.collect::<Vec<_>>(), &sectors(n_sectors), Facing::Left)?;
         let bodies = [base, wall].map(|polygons| Body { albedo, exitance, ..Body::black(polygons) }).to_vec();
-        let shape = Shape { bodies, symmetries: of_sectors(n_sectors) };
+        let shape = Shape { bodies, symmetries: of_sectors(n_sectors), ..Shape::default() };
         let model = Model::folded(shape, WHOLE, |_, _| true, ACCURACY)?;
         let radiance = model.radiance()?;
         let centre = Probe { surface: 0, point: Vec3::ZERO, normal: Vec3::Z };
@@ -236,7 +240,9 @@ fn cube_radiosity(side: f64, albedo: f64, n: usize, grading: f64, accuracy: f64)
     let faces = cube::faces(side).iter().map(face).collect::<Result<Vec<_>, _>>()?;
     let body = |polygons: Vec<Polygon>, exitance| Body { albedo, exitance, ..Body::black(polygons) };
     let bodies = vec![body(faces[0].clone(), 1.0), body(faces[1].clone(), 0.0), body(faces[2..].concat(), 0.0)];
-    let shape = Shape { bodies, symmetries: of_a_box(Vec3::splat(0.5 * side), Vec3::X, Vec3::Y) };
+    let symmetries = of_a_box(Vec3::splat(0.5 * side), Vec3::X, Vec3::Y);
+    let steps = Vec3::AXES.map(|axis| side / n as f64 * axis).to_vec();
+    let shape = Shape { bodies, symmetries, steps };
     let model = Model::folded(shape, patch_size, |_, _| true, accuracy)?;
     let radiance = model.radiance()?;
     Ok((model.radiosity(&radiance), model.radiosity_noise(&radiance)))
@@ -246,7 +252,7 @@ fn cube_radiosity(side: f64, albedo: f64, n: usize, grading: f64, accuracy: f64)
 pub fn cube_means(case: &Case) -> Result<Answers, CaseError> {
     let side = case.geometry.length("side")?;
     let albedo = case.geometry.number("rho")?;
-    let refinement = Refinement { levels: &[4, 6, 8, 12, 16, 20], powers: EVEN, enough: ENOUGH };
+    let refinement = Refinement { levels: &[4, 6, 8, 12, 16, 20, 24, 28], powers: EVEN, enough: ENOUGH };
     let limits = refine(refinement, |n| cube_radiosity(side, albedo, n, EDGE, ACCURACY))?;
     let mut answers = named(&["mean_B_floor", "mean_B_ceiling", "mean_B_side"], &limits);
     let table = "P0_uniform_n_x_n_means_floor_ceiling_side";

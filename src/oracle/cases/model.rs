@@ -30,11 +30,13 @@ pub struct Body {
     pub exchanges: bool,
 }
 
-/// Bodies, and isometries that may map them onto themselves: what is the same all around is computed once.
-#[derive(Clone, Debug)]
+/// Bodies, isometries that may map them onto themselves, and steps that may carry their patches into others: what is the same all around is
+/// computed once, and so is what is the same all along.
+#[derive(Clone, Debug, Default)]
 pub struct Shape {
     pub bodies: Vec<Body>,
     pub symmetries: Vec<Affine3>,
+    pub steps: Vec<Vec3>,
 }
 
 /// A point of a surface where radiosity is asked for.
@@ -148,6 +150,7 @@ impl Model {
         let exchanges: Vec<bool> = shape.bodies.iter().map(|body| body.exchanges).collect();
         let (scene, bundles) = cut(shape.bodies, patch_size)?;
         let orbits = Orbits::new(&scene, &bundles, |surface| exchanges[surface], &shape.symmetries);
+        let orbits = orbits.in_rows(&scene, &bundles, &shape.steps);
         let settings = Exchange {
             tolerance: 1e-3 * accuracy,
             occlusion: Occlusion::Exact { tolerance: accuracy },

@@ -62,7 +62,7 @@ fn pair_past_a_disk(fields: &Geometry, one: &Polygon, two: &Polygon) -> Result<A
     let levels = [8, 12, 16, 24, 32, 48, 64, 96, 128];
     let limits = refine(Refinement { levels: &levels, powers: EVEN, enough: ENOUGH }, |n| {
         let blocker = disk(&Frame::about(normal), centre, radius, &sectors(n))?;
-        let shape = Shape { bodies: bodies(one, two, &[blocker]), symmetries: Vec::new() };
+        let shape = Shape { bodies: bodies(one, two, &[blocker]), ..Shape::default() };
         let model = Model::folded(shape, WHOLE, |from, _| from == 0, PAST_A_DISK)?;
         let factors = model.form_factors();
         Ok((vec![factors[0][1], factors[0][2]], model.noise()))
@@ -125,7 +125,7 @@ pub fn rectangle_family(case: &Case) -> Result<Answers, CaseError> {
         slopes.push((at(above)?.0 - at(below)?.0) / (above - below));
     }
     let slope_error = f64::EPSILON * value / steps[steps.len() - 1];
-    let limit = extrapolate(&steps, &slopes, EVEN, slope_error);
+    let limit = extrapolate(&steps, &slopes, EVEN, &[slope_error; DIFFERENCE_STEPS.len()]);
     let mut answers = Answers::new(Demand::Digits);
     answers.number("F", value, error * value);
     answers.number("dF", limit.value, limit.error);

@@ -3,7 +3,7 @@
 
 use super::answer::{Answers, Demand};
 use super::error::CaseError;
-use super::limit::{EVEN, HORIZON, Refinement, refine};
+use super::limit::{CONSTANT, EVEN, HORIZON, Refinement, refine};
 use super::model::{Body, Model, Shape, WHOLE};
 use super::reader::{Case, Geometry};
 use super::revolution::{Facing, arc, disk, joined, revolve, sectors};
@@ -71,7 +71,11 @@ fn blocked() -> Refinement<'static> {
 
 /// Surfaces with the symmetry of the level's sectors.
 fn turned(level: usize, surfaces: Vec<Vec<Polygon>>) -> Shape {
-    Shape { bodies: surfaces.into_iter().map(Body::black).collect(), symmetries: of_sectors(SECTORS * level) }
+    Shape {
+        bodies: surfaces.into_iter().map(Body::black).collect(),
+        symmetries: of_sectors(SECTORS * level),
+        ..Shape::default()
+    }
 }
 
 /// A disk about the z axis at this height, facing up or down, in a triangle a sector.
@@ -203,7 +207,7 @@ pub fn sphere_rectangle(case: &Case) -> Result<Answers, CaseError> {
     let refinement = Refinement { levels: &LEVELS[2..12], powers: HORIZON, enough: ENOUGH };
     factors(refinement, &[("F", 0, 1)], |level| {
         let bodies = vec![Body::black(ball(radius, level, Facing::Left)?), Body::black(vec![rectangle.clone()])];
-        Ok(Shape { bodies, symmetries: of_a_box(Vec3::ZERO, Vec3::X, Vec3::Y) })
+        Ok(Shape { bodies, symmetries: of_a_box(Vec3::ZERO, Vec3::X, Vec3::Y), ..Shape::default() })
     })
 }
 
@@ -213,12 +217,17 @@ pub fn nested_balls(inner: f64, outer: f64, n_sectors: usize, n_rings: usize) ->
     Ok([ball(inner, Facing::Left)?, ball(outer, Facing::Right)?])
 }
 
-/// `concentric_spheres`. With the same facets, what spheres exchange has the ratio of their areas at any level: two are enough.
+/// Where all levels agree: two would be enough, and more are there for what is badly known on one of them.
+pub fn agreeing() -> Refinement<'static> {
+    Refinement { levels: &LEVELS[..4], powers: CONSTANT, enough: ENOUGH }
+}
+
+/// `concentric_spheres`. With the same facets, what spheres exchange has the ratio of their areas at any level.
 pub fn concentric_spheres(case: &Case) -> Result<Answers, CaseError> {
     let [inner, outer] = lengths(&case.geometry, ["r_inner", "r_outer"])?;
-    factors(even(2), &[("F_12", 0, 1), ("F_21", 1, 0), ("F_22", 1, 1)], |level| {
+    factors(agreeing(), &[("F_12", 0, 1), ("F_21", 1, 0), ("F_22", 1, 1)], |level| {
         let bodies = nested_balls(inner, outer, SECTORS * level, 4 * level)?.map(Body::black).into();
-        Ok(Shape { bodies, symmetries: of_sectors(SECTORS * level) })
+        Ok(Shape { bodies, symmetries: of_sectors(SECTORS * level), ..Shape::default() })
     })
 }
 

@@ -7,7 +7,7 @@ use super::limit::{EVEN, Limit, Refinement, refine};
 use super::model::{Body, Model, Shape, WHOLE};
 use super::reader::Case;
 use super::revolution::{Facing, arc, revolve, sectors};
-use super::round::{ACCURACY, DEAR, ENOUGH, LEVELS, SECTORS, lengths, n_rings, nested_balls};
+use super::round::{ACCURACY, DEAR, ENOUGH, LEVELS, SECTORS, agreeing, lengths, n_rings, nested_balls};
 use super::symmetry::of_sectors;
 use super::value::Value;
 use crate::geometry::Polygon;
@@ -18,6 +18,14 @@ const N_BOUNCES: usize = 11;
 
 /// Sectors a level of a sphere in bands: narrow ones keep apart what is finer than they are.
 const SECTORS_OF_BANDS: usize = 32;
+
+/// Form factors are asked for to as many digits more as radiosities lose; no more than three.
+const LEAST_ABSORBED: f64 = 1e-3;
+
+/// Rings of concentric spheres, and how many numbers of them are tried.
+const FEWEST_RINGS: usize = 5;
+const MOST_RINGS: usize = 24;
+const N_LEVELS: usize = 7;
 
 fn refinement(n_levels: usize) -> Refinement<'static> {
     Refinement { levels: &LEVELS[..n_levels], powers: EVEN, enough: ENOUGH }
@@ -66,7 +74,12 @@ pub fn sphere_patches(case: &Case) -> Result<Answers, CaseError> {
             revolve(&profile, &sectors(n_sectors), Facing::Right).map(Body::black)
         };
         let bodies = bands.iter().map(band).collect::<Result<Vec<_>, _>>()?;
-        let model = Model::folded(Shape { bodies, symmetries: of_sectors(n_sectors) }, WHOLE, |_, _| true, ACCURACY)?;
+        let model = Model::folded(
+            Shape { bodies, symmetries: of_sectors(n_sectors), ..Shape::default() },
+            WHOLE,
+            |_, _| true,
+            ACCURACY,
+        )?;
         let (factors, areas) = (model.form_factors(), model.areas());
         let whole: f64 = areas.iter().sum();
         let mean = |values: &[f64]| values.iter().zip(areas).map(|(value, area)| value * area).sum::<f64>() / whole;
@@ -121,7 +134,7 @@ pub fn spherical_cavity(case: &Case) -> Result<Answers, CaseError> {
         let profile = arc(radius, [opening, PI], n_rings(PI - opening, level));
         let wall = revolve(&profile, &sectors(n_sectors), Facing::Right)?;
         let body = Body { albedo: 1.0 - emissivity, exitance: emissivity, ..Body::black(wall) };
-        let shape = Shape { bodies: vec![body], symmetries: of_sectors(n_sectors) };
+        let shape = Shape { bodies: vec![body], symmetries: of_sectors(n_sectors), ..Shape::default() };
         let model = Model::folded(shape, WHOLE, |_, _| true, ACCURACY)?;
         let radiance = model.radiance()?;
         let (mean, incident, area) = (model.radiosity(&radiance)[0], model.irradiance(&radiance)[0], model.areas()[0]);
@@ -141,12 +154,13 @@ pub fn grey(case: &Case) -> Result<Answers, CaseError> {
     if albedo.len() != 2 || exitance.len() != 2 {
         return Err(CaseError::Geometry { field: "rho".to_string(), problem: "and 'E' must have two numbers each" });
     }
-    let limits = refine(refinement(2), |level| {
+    let limits = refine(agreeing(), |level| {
         let bodies = nested_balls(inner, outer, SECTORS * level, 4 * level)?.map(Body::black).into();
-        let shape = Shape { bodies, symmetries: of_sectors(SECTORS * level) };
-        let model = Model::folded(shape, WHOLE, |_, _| true, ACCURACY)?;
-        let (b, h) = constant_on_surfaces(&model.form_factors(), &albedo, &exitance)?;
+        let shape = Shape { bodies, symmetries: of_sectors(SECTORS * level), ..Shape::default() };
         let absorbed = 1.0 - albedo[0].max(albedo[1]);
+        let accuracy = ACCURACY * absorbed.clamp(LEAST_ABSORBED, 1.0);
+        let model = Model::folded(shape, WHOLE, |_, _| true, accuracy)?;
+        let (b, h) = constant_on_surfaces(&model.form_factors(), &albedo, &exitance)?;
         Ok((vec![b[0], b[1], b[0] - h[0]], model.noise() * b[0].max(b[1]) / absorbed))
     })?;
     Ok(named(&["B1", "B2", "q1"], &limits))
@@ -177,6 +191,23 @@ fn degree(emission: &str) -> Result<usize, CaseError> {
     degree.ok_or(CaseError::Needs("an emission of the form 1+P_l(cos theta)"))
 }
 
+/// Numbers of rings on a sphere, rising, of which a whole number fits best between a point and the horizon that a smaller sphere in the
+/// middle makes for it, at this polar angle from it.
+///
+/// What a ring sees begins or ends there. Errors hold a term that depends on where in a ring that is, and run in even powers where it is
+/// always at the same place.
+fn rings_in_step(horizon: f64) -> Vec<usize> {
+    let misfit = |n: &usize| {
+        let rings = horizon / PI * *n as f64;
+        (rings - rings.round()).abs()
+    };
+    let mut numbers: Vec<usize> = (FEWEST_RINGS..=MOST_RINGS).collect();
+    numbers.sort_by(|a, b| misfit(a).total_cmp(&misfit(b)));
+    numbers.truncate(N_LEVELS);
+    numbers.sort_unstable();
+    numbers
+}
+
 /// `concentric_spheres` of which the outer one emits 1 + Pₗ(cos θ): an unknown for every ring of both.
 ///
 /// With Pₗ averaged over rings, coefficients of Pₗ are (2 l + 1) times means with Pₗ, and operators have their values on it.
@@ -187,9 +218,9 @@ pub fn zonal(case: &Case) -> Result<Answers, CaseError> {
     if case.geometry.number("E_inner")? != 0.0 {
         return Err(CaseError::Needs("an inner sphere that does not emit"));
     }
-    let dear = Refinement { levels: &[1, 2, 3, 4, 5, 6, 7, 8], powers: EVEN, enough: DEAR };
-    let limits = refine(dear, |level| {
-        let (n_sectors, n_rings) = (SECTORS * level, n_rings(PI, level));
+    let levels = rings_in_step((inner / outer).acos());
+    let limits = refine(Refinement { levels: &levels, powers: EVEN, enough: DEAR }, |n_rings| {
+        let n_sectors = 2 * n_rings;
         let zonal: Vec<f64> = (0..n_rings)
             .map(|ring| {
                 let cosine = |k: usize| (PI * k as f64 / n_rings as f64).cos();
@@ -208,7 +239,7 @@ pub fn zonal(case: &Case) -> Result<Answers, CaseError> {
             rings.map(|(k, polygons)| ring(sphere, polygons, k)).collect::<Vec<_>>()
         };
         let bodies = rings(0).into_iter().chain(rings(1)).collect();
-        let shape = Shape { bodies, symmetries: of_sectors(n_sectors) };
+        let shape = Shape { bodies, symmetries: of_sectors(n_sectors), ..Shape::default() };
         let model = Model::folded(shape, WHOLE, |_, _| true, ACCURACY)?;
         let radiance = model.radiance()?;
         let (b, flows, areas) = (model.radiosity(&radiance), model.flows(), model.areas());
