@@ -10,6 +10,7 @@ mod factor;
 mod gth;
 mod matrix;
 mod operator;
+mod range;
 mod scratch;
 mod share;
 mod single;
@@ -26,6 +27,7 @@ pub use factor::{CholeskyFactor, FactorError, Factorization, LuFactor, NalgebraL
 pub use gth::GthFactor;
 pub use matrix::Matrix;
 pub use operator::LinearOperator;
+pub use range::Range;
 pub use scratch::Scratch;
 pub use single::SingleLuFactor;
 pub use sparse::Sparse;
