@@ -1,0 +1,9 @@
+//! Methods that know which unknowns are near each other: what converges slowly is smooth, and is solved for on groups of them.
+
+mod coarse;
+mod deflated_cg;
+mod shifted;
+mod two_grid;
+
+pub use deflated_cg::DeflatedCg;
+pub use two_grid::{Perron, TwoGrid};
