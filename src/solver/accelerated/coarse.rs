@@ -8,10 +8,13 @@
 //! W K is symmetric. What a row loses, a, is what it absorbs and what it hands to unknowns that are left out: known without
 //! subtracting, so that C is, too.
 //!
+//! On the way the strong entries of K are kept, see [`Near`].
+//!
 //! Corrections come as a constant and a rest, δ = P (β 1 + d), and what they do to a residual is told without a product with K:
 //! (I − K) P (β 1 + d) = β a + P d − B d.
 
 use super::super::SolveError;
+use super::near::{self, Near};
 use crate::linalg::{Aggregation, Block, Dense, Equation, LossFactor, SelfAdjoint, Unknown};
 use rayon::prelude::*;
 
@@ -45,6 +48,7 @@ struct Band {
     /// a, n: what (I − K) P makes of 1 where P is one; where P is zero, minus what K P makes of 1.
     loss: Vec<f64>,
     factor: LossFactor,
+    near: Near,
 }
 
 /// A coarse space of every band.
@@ -75,16 +79,22 @@ impl<'a> Coarse<'a> {
             let mut spread = Dense::zeros(n, m);
             let mut loss = vec![0.0; n];
             let mut products = vec![0.0; n * sources.len()];
+            let mut near: Vec<Vec<(u32, f64)>> = vec![Vec::new(); n];
+            let root: Vec<f64> = weight.iter().map(|w| w.sqrt()).collect();
+            let threshold = near::STRONG / n as f64;
             let tasks = spread.values_mut().par_chunks_mut(ROWS_A_TASK * m.max(1)).zip(loss.par_chunks_mut(ROWS_A_TASK));
-            let tasks = tasks.zip(products.par_chunks_mut(ROWS_A_TASK * sources.len().max(1)));
+            let tasks = tasks.zip(products.par_chunks_mut(ROWS_A_TASK * sources.len().max(1))).zip(near.par_chunks_mut(ROWS_A_TASK));
             tasks.enumerate().for_each_init(
                 || vec![0.0; n],
-                |row, (task, ((spread, loss), products))| {
-                    for (k, (gathered, loss)) in spread.chunks_mut(m.max(1)).zip(loss).enumerate() {
+                |row, (task, (((spread, loss), products), near))| {
+                    for (k, ((gathered, loss), near)) in spread.chunks_mut(m.max(1)).zip(loss).zip(near).enumerate() {
                         let i = task * ROWS_A_TASK + k;
                         equation.transport.row(band, i, row);
                         let dots = products[k * sources.len()..][..sources.len()].iter_mut().zip(sources);
                         dots.for_each(|(dot, x)| *dot = row.iter().zip(x.column(band)).map(|(k, x)| k * x).sum());
+                        // Keep what is strong.
+                        let strong = row.iter().enumerate().filter(|(j, k)| root[i] * *k > threshold * root[*j] && root[*j] > 0.0);
+                        near.extend(strong.map(|(j, k)| (j as u32, *k)));
                         // Gather the row by groups; what it hands to unknowns that are left out is lost.
                         let mut handed = 0.0;
                         if is_left_out {
@@ -119,7 +129,7 @@ impl<'a> Coarse<'a> {
                 }
             }
             let factor = LossFactor::new(flows, losses).map_err(|source| SolveError::Factor { method, band, source })?;
-            bands.push(Band { spread, loss, factor });
+            bands.push(Band { spread, loss, factor, near: Near::from_rows(&near) });
         }
         Ok(Self { aggregation, weights, bands })
     }
@@ -162,6 +172,17 @@ impl<'a> Coarse<'a> {
                 out.iter_mut().zip(self.bands[band].spread.row_slice(i)).for_each(|(out, b)| *out += factor * b);
             }
         }
+    }
+
+    /// What the strong entries of one band do on their own.
+    pub fn near(&self, band: usize) -> &Near {
+        &self.bands[band].near
+    }
+
+    /// Work of [`Near::apply`] in products, in the fullest band.
+    pub fn near_work(&self) -> f64 {
+        let n = self.aggregation.n_unknowns() as f64;
+        self.bands.iter().map(|band| band.near.n_read()).max().unwrap_or(0) as f64 / (n * n)
     }
 
     /// q ← d of C (β 1 + d) = q, and β.

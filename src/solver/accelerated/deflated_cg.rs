@@ -1,14 +1,16 @@
-//! Conjugate gradients with a coarse space deflated.
+//! Conjugate gradients with a coarse space deflated, preconditioned by what is strong and near.
 //!
 //! ```text
-//! p ← r + β p − P C⁻¹ (Pᵀ W − (K P)ᵀ W) r,      every residual stays orthogonal to the coarse space
+//! z = r + N r + N² r + N³ r,      p ← z + β p − P C⁻¹ (Pᵀ W − (K P)ᵀ W) z
 //! ```
+//!
+//! N holds the strong entries of K, those between patches that share an edge; every residual stays orthogonal to the coarse space.
 //!
 //! in the inner product ⟨a, b⟩ = Σ wᵢ aᵢ bᵢ in which K is self-adjoint: w = μ/s for radiance, μ s for importance, s the diagonal of S.
 //! Unknowns without scattering have no part in it: they emit, or gather, and send nothing back.
 //!
 //! Needs the self-adjoint form with S diagonal, and ρ(K) < 1; checks both. Every entry of K is read once to set up, which gives K P,
-//! the first bounce and two probes of the symmetry; then one product an iteration, and a pass over the n × m matrix K P. What is left to
+//! the first bounce and two probes of the symmetry; then one product an iteration, a pass over the n × m matrix K P and three over N, all counted. What is left to
 //! converge is the spectrum of K beside the coarse space, which knows nothing of the albedo: for absorption 1e-12 as fast as for ½.
 //! Source: Nicolaides (1987); Saad, Yeung, Erhel and Guyomarc'h (2000), algorithm 3.6.
 
@@ -73,9 +75,13 @@ impl Solver for DeflatedCg {
         monitor.work.products += coarse.pass_work();
 
         let (mut p, mut image) = (Block::zeros(n, n_bands), Block::zeros(n, n_bands));
+        let (mut z, mut scratch) = (Block::zeros(n, n_bands), vec![0.0; n]);
+        for band in 0..n_bands {
+            coarse.near(band).apply(r.column(band), &mut scratch, z.column_mut(band));
+        }
         let mut radiance = equation.emission.clone();
-        // ⟨r, r⟩ now and at the last step.
-        let mut norms: Vec<[f64; 2]> = (0..n_bands).map(|band| [inner(&coarse, band, r.column(band), r.column(band)), 0.0]).collect();
+        // ⟨r, z⟩ now and at the last step.
+        let mut norms: Vec<[f64; 2]> = (0..n_bands).map(|band| [inner(&coarse, band, r.column(band), z.column(band)), 0.0]).collect();
         let stop = loop {
             field.write(&coarse, &mut radiance);
             if let Some(stop) = monitor.check(relative_residual(equation.emission, &r), &radiance)? {
@@ -85,15 +91,15 @@ impl Solver for DeflatedCg {
             // Turn the direction conjugate to the last, and to the coarse space.
             for (band, [norm, last]) in norms.iter().copied().enumerate() {
                 let turn = if last > 0.0 { norm / last } else { 0.0 };
-                coarse.gather(band, r.column(band), &mut gathered);
-                coarse.gather_spread(band, r.column(band), &mut spread);
+                coarse.gather(band, z.column(band), &mut gathered);
+                coarse.gather_spread(band, z.column(band), &mut spread);
                 gathered.iter_mut().zip(&spread).for_each(|(q, b)| *q = b - *q);
                 let constant = coarse.solve(band, &mut gathered);
-                p.column_mut(band).iter_mut().zip(r.column(band)).for_each(|(p, r)| *p = r + turn * *p);
+                p.column_mut(band).iter_mut().zip(z.column(band)).for_each(|(p, r)| *p = r + turn * *p);
                 coarse.prolong(band, &gathered, p.column_mut(band));
                 coarse.prolong_constant(band, constant, p.column_mut(band));
             }
-            monitor.work.products += coarse.pass_work();
+            monitor.work.products += coarse.pass_work() + coarse.near_work();
 
             // image = (I − K) p.
             equation.transport.apply(&p, &mut image);
@@ -118,7 +124,8 @@ impl Solver for DeflatedCg {
                 add_scaled(r.column_mut(band), -step, image.column(band));
                 settle(coarse.weight(band), field.rest.column_mut(band), r.column_mut(band));
                 *last = *norm;
-                *norm = inner(&coarse, band, r.column(band), r.column(band));
+                coarse.near(band).apply(r.column(band), &mut scratch, z.column_mut(band));
+                *norm = inner(&coarse, band, r.column(band), z.column(band));
             }
         };
         conclude(method, equation, radiance, stop, monitor.work, monitor.history)

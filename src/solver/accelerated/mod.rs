@@ -2,6 +2,7 @@
 
 mod coarse;
 mod deflated_cg;
+mod near;
 mod shifted;
 mod two_grid;
 
