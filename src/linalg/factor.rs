@@ -23,9 +23,22 @@ pub enum FactorError {
     NotPositiveDefinite { pivot: usize, size: usize },
     #[error("entry ({row}, {column}) of the matrix is {value}")]
     NotFinite { row: usize, column: usize, value: f64 },
+    #[error("K must be at least 0 everywhere, and entry ({row}, {column}) is {value:e}")]
+    Negative { row: usize, column: usize, value: f64 },
+    #[error("no row of K may gain more than 1, and row {row} loses {loss:e}")]
+    Gain { row: usize, loss: f64 },
 }
 
-fn check_finite(a: &Dense) -> Result<(), FactorError> {
+/// A square matrix A that is factored once and solved for many right-hand sides.
+pub trait Factorization: Send + Sync {
+    /// x ← A⁻¹ x for every column.
+    fn solve(&self, x: &mut Block);
+
+    /// x ← A⁻ᵀ x for every column.
+    fn solve_transpose(&self, x: &mut Block);
+}
+
+pub(super) fn check_finite(a: &Dense) -> Result<(), FactorError> {
     match a.values().iter().position(|v| !v.is_finite()) {
         None => Ok(()),
         Some(k) => {
@@ -36,7 +49,7 @@ fn check_finite(a: &Dense) -> Result<(), FactorError> {
 }
 
 /// The block as faer's matrix.
-fn view(block: &mut Block) -> MatMut<'_, f64> {
+pub(super) fn view(block: &mut Block) -> MatMut<'_, f64> {
     let (n, m) = (block.n_rows(), block.n_columns());
     MatMut::from_column_major_slice_mut(block.values_mut(), n, m)
 }
@@ -89,6 +102,26 @@ impl LuFactor {
     }
 }
 
+impl Factorization for LuFactor {
+    fn solve(&self, x: &mut Block) {
+        self.solve(x);
+    }
+
+    fn solve_transpose(&self, x: &mut Block) {
+        let n = self.forward.len();
+        let scratch = lu::solve::solve_transpose_in_place_scratch::<usize, f64>(n, x.n_columns(), Par::Seq);
+        lu::solve::solve_transpose_in_place_with_conj(
+            self.factors.as_ref(),
+            self.factors.as_ref(),
+            PermRef::new_checked(&self.forward, &self.backward, n),
+            Conj::No,
+            view(x),
+            Par::Seq,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        );
+    }
+}
+
 /// A = L Lᵀ for symmetric positive definite A; reads the lower triangle. Cost ⅓ n³.
 pub struct CholeskyFactor(Mat<f64>);
 
@@ -124,6 +157,16 @@ impl CholeskyFactor {
     }
 }
 
+impl Factorization for CholeskyFactor {
+    fn solve(&self, x: &mut Block) {
+        self.solve(x);
+    }
+
+    fn solve_transpose(&self, x: &mut Block) {
+        self.solve(x);
+    }
+}
+
 /// P A = L U by nalgebra: slower, and sharing no line with faer.
 pub struct NalgebraLu(nalgebra::LU<f64, nalgebra::Dyn, nalgebra::Dyn>);
 
@@ -147,6 +190,24 @@ impl NalgebraLu {
             let mut column = nalgebra::DVector::from_column_slice(x.column(c));
             let solved = self.0.solve_mut(&mut column);
             debug_assert!(solved, "pivots were checked");
+            x.column_mut(c).copy_from_slice(column.as_slice());
+        }
+    }
+}
+
+impl Factorization for NalgebraLu {
+    fn solve(&self, x: &mut Block) {
+        self.solve(x);
+    }
+
+    fn solve_transpose(&self, x: &mut Block) {
+        // Aᵀ = Uᵀ Lᵀ P.
+        for c in 0..x.n_columns() {
+            let mut column = nalgebra::DVector::from_column_slice(x.column(c));
+            let solved = self.0.u().tr_solve_upper_triangular_mut(&mut column)
+                && self.0.l().tr_solve_lower_triangular_mut(&mut column);
+            debug_assert!(solved, "pivots were checked");
+            self.0.p().inv_permute_rows(&mut column);
             x.column_mut(c).copy_from_slice(column.as_slice());
         }
     }

@@ -31,6 +31,10 @@ pub enum SolveError {
         "{method} cannot solve unknown {unknown} in band {band} for itself: its own gain Kᵢᵢ is {gain:e}, must be below 1"
     )]
     SelfGain { method: &'static str, band: usize, unknown: usize, gain: f64 },
+    #[error(
+        "{method} broke down in band {band} at iteration {iteration}: {quantity} = {value:e}, at a relative residual of {residual:e}"
+    )]
+    Breakdown { method: &'static str, band: usize, iteration: usize, quantity: &'static str, value: f64, residual: f64 },
 }
 
 /// A row of K that gives out as much as it takes in, or more.

@@ -3,29 +3,30 @@
 //! Every method is a struct of its parameters and a [`Solver`]. Iterative ones stop when ‖E + K L − L‖∞ ≤ tolerance · ‖E‖∞ in every
 //! band; running out of budget is a status, divergence and singularity are errors.
 
+mod accelerated;
 mod bracket;
-mod cg;
-mod cholesky;
+mod budget;
+mod direct;
 mod error;
-mod gauss_seidel;
-mod jacobi;
-mod lu;
+mod krylov;
 mod monitor;
-mod neumann;
 mod report;
 mod self_adjoint;
-mod southwell;
+mod stationary;
 
+pub use accelerated::{DeflatedCg, Perron, TwoGrid};
 pub use bracket::Bracket;
-pub use cg::Cg;
-pub use cholesky::Cholesky;
+pub use budget::{BUDGET, Budget};
+pub use direct::{Cholesky, Factored, Gth, Lu, LuNalgebra, SingleLu, SparseCholesky, SparseLu};
 pub use error::{RowGain, SolveError};
-pub use gauss_seidel::GaussSeidel;
-pub use jacobi::Jacobi;
-pub use lu::{Lu, LuNalgebra};
-pub use neumann::Neumann;
-pub use report::{Solution, SolveReport, Stop};
-pub use southwell::Southwell;
+pub use krylov::{
+    Anderson, BiCg, BiCgStab, Cg, FlexibleGmres, Gmres, MinimalResidual, Minres, OwnGain, Preconditioner, Prepared,
+};
+pub use report::{Solution, SolveReport, Stop, Work};
+pub use stationary::{
+    Chebyshev, GaussSeidel, Jacobi, Neumann, Overshooting, Progressive, Richardson, Sor, Southwell,
+    SymmetricGaussSeidel,
+};
 
 use crate::linalg::{Block, Equation};
 use std::ops::ControlFlow;
@@ -64,6 +65,11 @@ pub struct Iteration<'a> {
 pub trait Observer {
     /// Called after every iteration; `Break` ends the solve with [`Stop::Observer`].
     fn observe(&mut self, iteration: Iteration<'_>) -> ControlFlow<()>;
+
+    /// Products after which the solve ends with [`Stop::Budget`]. See [`Budget`].
+    fn budget(&self) -> f64 {
+        BUDGET
+    }
 }
 
 impl Observer for () {
@@ -82,12 +88,33 @@ impl<F: FnMut(Iteration<'_>) -> ControlFlow<()>> Observer for F {
 pub fn all(tolerance: f64) -> Vec<Box<dyn Solver>> {
     vec![
         Box::new(Lu),
+        Box::new(Gth),
         Box::new(Cholesky),
+        Box::new(SparseLu),
+        Box::new(SparseCholesky),
+        Box::new(SingleLu { tolerance }),
         Box::new(LuNalgebra),
         Box::new(Neumann { tolerance }),
         Box::new(Jacobi { tolerance }),
+        Box::new(Richardson { tolerance, damping: None }),
         Box::new(GaussSeidel { tolerance }),
+        Box::new(SymmetricGaussSeidel { tolerance }),
+        Box::new(Sor { tolerance, relaxation: None }),
         Box::new(Southwell { tolerance }),
+        Box::new(Progressive { tolerance }),
+        Box::new(Overshooting { tolerance }),
+        Box::new(Chebyshev { tolerance }),
         Box::new(Cg { tolerance }),
+        Box::new(Minres { tolerance }),
+        Box::new(BiCg { tolerance }),
+        Box::new(BiCgStab { tolerance, preconditioner: None }),
+        Box::new(Gmres { tolerance, restart: 30, preconditioner: None }),
+        Box::new(FlexibleGmres { tolerance, restart: 30, preconditioner: &MinimalResidual { n_steps: 2 } }),
+        Box::new(Anderson { tolerance, depth: 5 }),
     ]
+}
+
+/// The method of this name, as reports and the command line give it.
+pub fn named(name: &str, tolerance: f64) -> Option<Box<dyn Solver>> {
+    all(tolerance).into_iter().find(|method| method.name() == name)
 }

@@ -5,9 +5,6 @@ use super::{Iteration, Observer, RowGain, SolveError, Stop};
 use crate::linalg::{Block, Equation};
 use std::ops::ControlFlow;
 
-/// A method that has spent this many products ends with [`Stop::Budget`]; an observer may end it sooner.
-const BUDGET: f64 = 1e6;
-
 /// A residual this much above the best so far is divergence, not a hump.
 const DIVERGENCE: f64 = 1e8;
 
@@ -23,6 +20,7 @@ pub(super) struct Monitor<'a> {
     method: &'static str,
     equation: Equation<'a>,
     tolerance: f64,
+    budget: f64,
     observer: &'a mut dyn Observer,
     best: f64,
     /// Residual and iteration that last made progress.
@@ -37,6 +35,7 @@ impl<'a> Monitor<'a> {
             method,
             equation,
             tolerance,
+            budget: observer.budget(),
             observer,
             best: f64::INFINITY,
             progress: (f64::INFINITY, 0),
@@ -73,7 +72,7 @@ impl<'a> Monitor<'a> {
             Some(Stop::Converged)
         } else if told == ControlFlow::Break(()) {
             Some(Stop::Observer)
-        } else if self.work.products >= BUDGET {
+        } else if self.work.products >= self.budget {
             Some(Stop::Budget)
         } else if index - self.progress.1 >= PATIENCE {
             Some(Stop::Stagnated)
@@ -84,7 +83,11 @@ impl<'a> Monitor<'a> {
 
     /// Counts whole products with K.
     pub fn count_applies(&mut self, n: usize) {
-        self.work.n_applies += n;
-        self.work.products += n as f64;
+        self.work.count_applies(n);
+    }
+
+    /// Counts whole products with K*.
+    pub fn count_adjoint_applies(&mut self, n: usize) {
+        self.work.count_adjoint_applies(n);
     }
 }

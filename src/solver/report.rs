@@ -49,8 +49,10 @@ pub struct SolveReport {
     pub n_applies: usize,
     /// Products with K* (all bands at once).
     pub n_adjoint_applies: usize,
-    /// Work in units of one product with K: entries touched / entries of K. Methods that read single rows or columns count here.
+    /// Work in units of one product with K or K*: entries touched / entries of K. Methods that read single rows or columns count here.
     pub products: f64,
+    /// Entries of the factors of the fullest band, where a sparse factorization stored them.
+    pub n_fill: Option<usize>,
     /// Residual by iteration, as the method knew it.
     pub history: Vec<f64>,
     /// ‖E + K L − L‖∞ / ‖E‖∞, worst band, recomputed from L (by one more product, not counted).
@@ -59,12 +61,28 @@ pub struct SolveReport {
     pub bracket: Option<Bracket>,
 }
 
-/// Work counts, as a method keeps them.
+/// Work counts, as a method keeps them; their meaning is that of [`SolveReport`].
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Work {
+pub struct Work {
     pub n_iterations: usize,
     pub n_applies: usize,
+    pub n_adjoint_applies: usize,
     pub products: f64,
+    pub n_fill: Option<usize>,
+}
+
+impl Work {
+    /// Counts whole products with K.
+    pub fn count_applies(&mut self, n: usize) {
+        self.n_applies += n;
+        self.products += n as f64;
+    }
+
+    /// Counts whole products with K*.
+    pub fn count_adjoint_applies(&mut self, n: usize) {
+        self.n_adjoint_applies += n;
+        self.products += n as f64;
+    }
 }
 
 /// Verifies an answer and writes its report. Two products with K.
@@ -87,8 +105,9 @@ pub(super) fn conclude(
         stop,
         n_iterations: work.n_iterations,
         n_applies: work.n_applies,
-        n_adjoint_applies: 0,
+        n_adjoint_applies: work.n_adjoint_applies,
         products: work.products,
+        n_fill: work.n_fill,
         history,
         true_residual,
         bracket: bracket::around(equation, &radiance, &residual),

@@ -29,7 +29,11 @@ pub(super) fn weights(form: SelfAdjoint<'_>, n_bands: usize) -> Option<Block> {
     let wave = Block::from_fn(n, n_bands, |i, band| (1.618 * (i + band) as f64 + 1.0).sin());
     let mut image = Block::zeros(n, n_bands);
     form.scattering_root.apply(&wave, &mut image);
-    let is_diagonal = image.values().iter().zip(root.values().iter().zip(wave.values())).all(|(image, (root, wave))| *image == root * wave);
+    let is_diagonal = image
+        .values()
+        .iter()
+        .zip(root.values().iter().zip(wave.values()))
+        .all(|(image, (root, wave))| *image == root * wave);
     let weight = |i: usize, band: usize| {
         let scattering = root.get(i, band) * root.get(i, band);
         match form.unknown {
@@ -82,8 +86,11 @@ impl<'a> Coarse<'a> {
             let mut near: Vec<Vec<(u32, f64)>> = vec![Vec::new(); n];
             let root: Vec<f64> = weight.iter().map(|w| w.sqrt()).collect();
             let threshold = near::STRONG / n as f64;
-            let tasks = spread.values_mut().par_chunks_mut(ROWS_A_TASK * m.max(1)).zip(loss.par_chunks_mut(ROWS_A_TASK));
-            let tasks = tasks.zip(products.par_chunks_mut(ROWS_A_TASK * sources.len().max(1))).zip(near.par_chunks_mut(ROWS_A_TASK));
+            let tasks =
+                spread.values_mut().par_chunks_mut(ROWS_A_TASK * m.max(1)).zip(loss.par_chunks_mut(ROWS_A_TASK));
+            let tasks = tasks
+                .zip(products.par_chunks_mut(ROWS_A_TASK * sources.len().max(1)))
+                .zip(near.par_chunks_mut(ROWS_A_TASK));
             tasks.enumerate().for_each_init(
                 || vec![0.0; n],
                 |row, (task, (((spread, loss), products), near))| {
@@ -93,7 +100,10 @@ impl<'a> Coarse<'a> {
                         let dots = products[k * sources.len()..][..sources.len()].iter_mut().zip(sources);
                         dots.for_each(|(dot, x)| *dot = row.iter().zip(x.column(band)).map(|(k, x)| k * x).sum());
                         // Keep what is strong.
-                        let strong = row.iter().enumerate().filter(|(j, k)| root[i] * *k > threshold * root[*j] && root[*j] > 0.0);
+                        let strong = row
+                            .iter()
+                            .enumerate()
+                            .filter(|(j, k)| root[i] * *k > threshold * root[*j] && root[*j] > 0.0);
                         near.extend(strong.map(|(j, k)| (j as u32, *k)));
                         // Gather the row by groups; what it hands to unknowns that are left out is lost.
                         let mut handed = 0.0;
@@ -128,7 +138,8 @@ impl<'a> Coarse<'a> {
                     flows.row_mut(group).iter_mut().zip(spread.row_slice(i)).for_each(|(f, b)| *f += w * b);
                 }
             }
-            let factor = LossFactor::new(flows, losses).map_err(|source| SolveError::Factor { method, band, source })?;
+            let factor =
+                LossFactor::new(flows, losses).map_err(|source| SolveError::Factor { method, band, source })?;
             bands.push(Band { spread, loss, factor, near: Near::from_rows(&near) });
         }
         Ok(Self { aggregation, weights, bands })

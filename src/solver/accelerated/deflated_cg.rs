@@ -49,7 +49,9 @@ impl Solver for DeflatedCg {
         // Read K once: the coarse equation, the first bounce, two probes of the symmetry.
         let aggregation = level(equation, self.n_groups);
         let probe = |frequency: f64| {
-            let wave = |i: usize, band: usize| if weights.get(i, band) > 0.0 { (frequency * (i as f64 + 1.0)).sin() } else { 0.0 };
+            let wave = |i: usize, band: usize| {
+                if weights.get(i, band) > 0.0 { (frequency * (i as f64 + 1.0)).sin() } else { 0.0 }
+            };
             Block::from_fn(n, n_bands, wave)
         };
         let probes = [probe(1.618_033_988_749_895), probe(2.414_213_562_373_095)];
@@ -81,7 +83,8 @@ impl Solver for DeflatedCg {
         }
         let mut radiance = equation.emission.clone();
         // ⟨r, z⟩ now and at the last step.
-        let mut norms: Vec<[f64; 2]> = (0..n_bands).map(|band| [inner(&coarse, band, r.column(band), z.column(band)), 0.0]).collect();
+        let mut norms: Vec<[f64; 2]> =
+            (0..n_bands).map(|band| [inner(&coarse, band, r.column(band), z.column(band)), 0.0]).collect();
         let stop = loop {
             field.write(&coarse, &mut radiance);
             if let Some(stop) = monitor.check(relative_residual(equation.emission, &r), &radiance)? {
@@ -151,7 +154,12 @@ fn add_scaled(x: &mut [f64], factor: f64, y: &[f64]) {
 }
 
 /// ⟨x, K y⟩ = ⟨K x, y⟩ of every band, where x and y are zero on what is left out.
-fn check_symmetry(method: &'static str, coarse: &Coarse<'_>, [x, y]: &[Block; 2], [kx, ky]: [&Block; 2]) -> Result<(), SolveError> {
+fn check_symmetry(
+    method: &'static str,
+    coarse: &Coarse<'_>,
+    [x, y]: &[Block; 2],
+    [kx, ky]: [&Block; 2],
+) -> Result<(), SolveError> {
     for band in 0..x.n_columns() {
         let product = |a: &Block, b: &Block| inner(coarse, band, a.column(band), b.column(band));
         let scale = (product(x, x) * product(ky, ky)).sqrt() + (product(kx, kx) * product(y, y)).sqrt();

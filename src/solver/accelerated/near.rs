@@ -28,7 +28,11 @@ impl Near {
             Some(*end)
         }));
         let entries = || rows.iter().flatten();
-        Self { starts: starts.collect(), columns: entries().map(|e| e.0).collect(), values: entries().map(|e| e.1).collect() }
+        Self {
+            starts: starts.collect(),
+            columns: entries().map(|e| e.0).collect(),
+            values: entries().map(|e| e.1).collect(),
+        }
     }
 
     /// Entries that [`Near::apply`] reads.
@@ -43,7 +47,11 @@ impl Near {
             scratch.copy_from_slice(z);
             for (i, (z, r)) in z.iter_mut().zip(r).enumerate() {
                 let row = self.starts[i]..self.starts[i + 1];
-                let gathered: f64 = self.columns[row.clone()].iter().zip(&self.values[row]).map(|(j, k)| k * scratch[*j as usize]).sum();
+                let gathered: f64 = self.columns[row.clone()]
+                    .iter()
+                    .zip(&self.values[row])
+                    .map(|(j, k)| k * scratch[*j as usize])
+                    .sum();
                 *z = r + gathered;
             }
         }

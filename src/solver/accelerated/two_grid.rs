@@ -41,7 +41,12 @@ impl Solver for TwoGrid {
     }
 
     fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
-        iterate(Monitor::new(self.name(), equation, self.tolerance, observer), self.name(), equation, &level(equation, self.n_groups))
+        iterate(
+            Monitor::new(self.name(), equation, self.tolerance, observer),
+            self.name(),
+            equation,
+            &level(equation, self.n_groups),
+        )
     }
 }
 
@@ -51,7 +56,12 @@ impl Solver for Perron {
     }
 
     fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
-        iterate(Monitor::new(self.name(), equation, self.tolerance, observer), self.name(), equation, &level(equation, Some(1)))
+        iterate(
+            Monitor::new(self.name(), equation, self.tolerance, observer),
+            self.name(),
+            equation,
+            &level(equation, Some(1)),
+        )
     }
 }
 

@@ -7,10 +7,10 @@
 //! Needs ρ(K) < 1 and Kᵢᵢ < 1. One product a sweep. Flat patches do not see themselves, so there it is the Neumann series; cells of
 //! a medium and glossy bins do. Source: Jacobi (1845); Saad (2003), §4.1.
 
-use super::monitor::Monitor;
-use super::report::{conclude, relative_residual};
-use super::{Observer, Solution, SolveError, Solver};
 use crate::linalg::{Block, Equation};
+use crate::solver::monitor::Monitor;
+use crate::solver::report::{conclude, relative_residual};
+use crate::solver::{Observer, Solution, SolveError, Solver};
 
 /// Sweeps until the residual is below the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +47,7 @@ impl Solver for Jacobi {
 ///
 /// # Errors
 /// [`SolveError::SelfGain`] where it is not above zero.
-pub(super) fn one_minus_diagonal(method: &'static str, equation: Equation<'_>) -> Result<Block, SolveError> {
+pub(in crate::solver) fn one_minus_diagonal(method: &'static str, equation: Equation<'_>) -> Result<Block, SolveError> {
     let mut own = Block::zeros(equation.n_unknowns(), equation.n_bands());
     for band in 0..equation.n_bands() {
         equation.transport.diagonal(band, own.column_mut(band));

@@ -7,10 +7,10 @@
 //! Needs ρ(K) < 1. One product a bounce; after k bounces the residual *is* the next term, Kᵏ⁺¹E. Never better than the spectral
 //! radius. Source: Neumann (1877); as bounces of light, Kajiya (1986), eq. 7.
 
-use super::monitor::Monitor;
-use super::report::{conclude, relative_residual};
-use super::{Observer, Solution, SolveError, Solver};
 use crate::linalg::{Block, Equation};
+use crate::solver::monitor::Monitor;
+use crate::solver::report::{conclude, relative_residual};
+use crate::solver::{Observer, Solution, SolveError, Solver};
 
 /// Sums bounces until the next one is below the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]

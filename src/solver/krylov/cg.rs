@@ -8,11 +8,12 @@
 //! the residual of u. Every band has its own step lengths and rests when it is done. Source: Hestenes and Stiefel (1952); Saad
 //! (2003), algorithm 6.18.
 
-use super::monitor::Monitor;
-use super::report::{band_residual, conclude, relative_residual};
-use super::self_adjoint::check_self_adjoint;
-use super::{Observer, Solution, SolveError, Solver};
+use super::inner::add_scaled;
 use crate::linalg::{Block, Equation};
+use crate::solver::monitor::Monitor;
+use crate::solver::report::{band_residual, conclude, relative_residual};
+use crate::solver::self_adjoint::check_self_adjoint;
+use crate::solver::{Observer, Solution, SolveError, Solver};
 
 /// Iterates until the residual is below the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,8 +81,4 @@ impl Solver for Cg {
         };
         conclude(method, equation, radiance, stop, monitor.work, monitor.history)
     }
-}
-
-fn add_scaled(x: &mut [f64], factor: f64, y: &[f64]) {
-    x.iter_mut().zip(y).for_each(|(x, y)| *x += factor * y);
 }

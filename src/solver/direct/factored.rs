@@ -1,0 +1,100 @@
+//! Factored once, solved for many right-hand sides.
+
+use crate::linalg::{Block, Dense, Equation, FactorError, Factorization};
+use crate::solver::report::{Work, conclude};
+use crate::solver::{Solution, SolveError, Stop};
+
+/// What one band of an equation is factored into, and the entries stored if they were fewer than all.
+pub(super) type Band = (Box<dyn Factorization>, Option<usize>);
+
+/// The factors of I − K in every band.
+pub struct Factored {
+    bands: Vec<Box<dyn Factorization>>,
+    /// μ, where the equation came with it.
+    etendue: Option<Vec<f64>>,
+    n_fill: Option<usize>,
+}
+
+impl Factored {
+    pub(super) fn new(
+        method: &'static str,
+        equation: Equation<'_>,
+        factor: impl Fn(Equation<'_>, usize) -> Result<Band, FactorError>,
+    ) -> Result<Self, SolveError> {
+        let mut factored =
+            Self { bands: Vec::new(), etendue: equation.self_adjoint.map(|form| form.etendue.to_vec()), n_fill: None };
+        for band in 0..equation.n_bands() {
+            let (factors, n_fill) =
+                factor(equation, band).map_err(|source| SolveError::Factor { method, band, source })?;
+            factored.bands.push(factors);
+            factored.n_fill = factored.n_fill.max(n_fill);
+        }
+        Ok(factored)
+    }
+
+    /// L of L = E + K L for every column of E; column c is of band c mod bands, so that a block holds any number of emissions. Cost 2 n²
+    /// a column for full factors.
+    ///
+    /// # Panics
+    /// If E has another number of rows than K.
+    pub fn solve(&self, emission: &Block) -> Block {
+        self.each_column(emission, |factors, x| factors.solve(x))
+    }
+
+    /// J of J = W + K* J likewise, K* being the adjoint in the étendue inner product; where the equation came without étendue, the plain
+    /// transpose.
+    pub fn solve_adjoint(&self, measurement: &Block) -> Block {
+        let ones = vec![1.0; measurement.n_rows()];
+        let etendue = self.etendue.as_deref().unwrap_or(&ones);
+        self.each_column(measurement, |factors, x| {
+            x.column_mut(0).iter_mut().zip(etendue).for_each(|(x, mu)| *x *= mu);
+            factors.solve_transpose(x);
+            x.column_mut(0).iter_mut().zip(etendue).for_each(|(x, mu)| *x /= mu);
+        })
+    }
+
+    /// Entries of the factors of the fullest band, if they are stored sparsely.
+    pub fn n_fill(&self) -> Option<usize> {
+        self.n_fill
+    }
+
+    fn each_column(&self, right: &Block, solve: impl Fn(&dyn Factorization, &mut Block)) -> Block {
+        let mut answer = Block::zeros(right.n_rows(), right.n_columns());
+        let mut column = Block::zeros(right.n_rows(), 1);
+        for c in 0..right.n_columns() {
+            column.column_mut(0).copy_from_slice(right.column(c));
+            solve(&*self.bands[c % self.bands.len()], &mut column);
+            answer.column_mut(c).copy_from_slice(column.column(0));
+        }
+        answer
+    }
+}
+
+/// Factors and solves band after band, keeping one band's factors at a time.
+pub(super) fn eliminate(
+    method: &'static str,
+    equation: Equation<'_>,
+    factor: impl Fn(Equation<'_>, usize) -> Result<Band, FactorError>,
+) -> Result<Solution, SolveError> {
+    let n = equation.n_unknowns();
+    let mut radiance = Block::zeros(n, equation.n_bands());
+    let mut work = Work::default();
+    for band in 0..equation.n_bands() {
+        let (factors, n_fill) = factor(equation, band).map_err(|source| SolveError::Factor { method, band, source })?;
+        work.n_fill = work.n_fill.max(n_fill);
+        let mut x = Block::from_fn(n, 1, |i, _| equation.emission.get(i, band));
+        factors.solve(&mut x);
+        radiance.column_mut(band).copy_from_slice(x.column(0));
+    }
+    conclude(method, equation, radiance, Stop::Direct, work, Vec::new())
+}
+
+/// I − K of one band, written out.
+pub(super) fn one_minus_transport(equation: Equation<'_>, band: usize) -> Dense {
+    let mut matrix = Dense::from_operator(equation.transport, band);
+    matrix.values_mut().iter_mut().for_each(|v| *v = -*v);
+    for i in 0..equation.n_unknowns() {
+        matrix.row_mut(i)[i] += 1.0;
+    }
+    matrix
+}

@@ -1,0 +1,15 @@
+//! Methods that factor I − K, or what it is made of.
+
+mod cholesky;
+mod factored;
+mod gth;
+mod lu;
+mod single;
+mod sparse;
+
+pub use cholesky::Cholesky;
+pub use factored::Factored;
+pub use gth::Gth;
+pub use lu::{Lu, LuNalgebra};
+pub use single::SingleLu;
+pub use sparse::{SparseCholesky, SparseLu};
