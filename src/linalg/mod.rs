@@ -25,7 +25,6 @@ pub use diagonal::Diagonal;
 pub use eigen::symmetric_eigenvalues;
 pub use equation::{Equation, SelfAdjoint, Unknown};
 pub use factor::{CholeskyFactor, FactorError, Factorization, LuFactor, NalgebraLu};
-pub use factor::{CholeskyFactor, FactorError, LuFactor, NalgebraLu};
 pub use gth::GthFactor;
 pub use hierarchy::{Aggregation, Hierarchy};
 pub use loss::LossFactor;
