@@ -12,6 +12,7 @@ mod krylov;
 mod monitor;
 mod report;
 mod self_adjoint;
+pub mod spectrum;
 mod stationary;
 
 pub use accelerated::{DeflatedCg, Perron, TwoGrid};

@@ -22,7 +22,7 @@ use rayon::prelude::*;
 const ROWS_A_TASK: usize = 32;
 
 /// Weights that make K self-adjoint, n × bands: μ/s for radiance, μ s for importance, and zero where s is; `None` if S^½ is not diagonal.
-pub(super) fn weights(form: SelfAdjoint<'_>, n_bands: usize) -> Option<Block> {
+pub fn weights(form: SelfAdjoint<'_>, n_bands: usize) -> Option<Block> {
     let n = form.etendue.len();
     let mut root = Block::zeros(n, n_bands);
     form.scattering_root.apply(&Block::from_fn(n, n_bands, |_, _| 1.0), &mut root);

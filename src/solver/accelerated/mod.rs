@@ -6,5 +6,6 @@ mod near;
 mod shifted;
 mod two_grid;
 
+pub(super) use coarse::weights as self_adjoint_weights;
 pub use deflated_cg::DeflatedCg;
 pub use two_grid::{Perron, TwoGrid};
