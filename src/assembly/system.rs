@@ -4,7 +4,7 @@ use super::exchange::{self, Exchange, ExchangeReport, RepairMethod};
 use super::operators::AdjointTransport;
 use super::{Laws, Orbits, Propagation, Transport};
 use crate::basis::{Bundles, Element};
-use crate::linalg::{Block, Diagonal, Equation, LinearOperator, Matrix, SelfAdjoint, Unknown};
+use crate::linalg::{Aggregation, Block, Diagonal, Equation, Hierarchy, LinearOperator, Matrix, SelfAdjoint, Unknown};
 use crate::scene::Scene;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -24,6 +24,7 @@ pub struct System {
     scattering_root: Diagonal,
     repair_scale: Vec<f64>,
     is_self_adjoint: bool,
+    hierarchy: Arc<Hierarchy>,
     report: ExchangeReport,
 }
 
@@ -66,7 +67,8 @@ pub fn assemble_watched(
         });
         AssemblyError::Overlap { surface, position, fullness }
     })?;
-    Ok(System::new(albedo, emission, bundles.etendue().into(), computed))
+    let hierarchy = bundles.hierarchy(scene);
+    Ok(System::new(albedo, emission, bundles.etendue().into(), hierarchy, computed))
 }
 
 /// [`assemble`] on orbits: an unknown for every orbit of bundles, and only the exchange of surfaces i and j where `wanted(i, j)` or
@@ -88,7 +90,8 @@ pub fn assemble_orbits(
     let n = orbits.n_orbits();
     let fold = |block: &Block| Block::from_fn(n, block.n_columns(), |i, band| block.get(orbits.members(i)[0], band));
     let etendue = (0..n).map(|i| orbits.members(i).iter().map(|k| bundles.etendue()[*k]).sum()).collect();
-    Ok((System::new(fold(&albedo), fold(&emission), etendue, computed), error))
+    let hierarchy = Hierarchy::new([Aggregation::whole(n)]);
+    Ok((System::new(fold(&albedo), fold(&emission), etendue, hierarchy, computed), error))
 }
 
 /// Albedo and emission of every bundle, n × bands each.
@@ -114,7 +117,13 @@ fn materials(scene: &Scene, bundles: &Bundles) -> Result<(Block, Block), Assembl
 }
 
 impl System {
-    fn new(albedo: Block, emission: Block, etendue: Arc<[f64]>, computed: exchange::Assembled) -> Self {
+    fn new(
+        albedo: Block,
+        emission: Block,
+        etendue: Arc<[f64]>,
+        hierarchy: Hierarchy,
+        computed: exchange::Assembled,
+    ) -> Self {
         let exchange::Assembled { exchange, error, sinks, repair_scale, report } = computed;
         let exchange = Arc::new(exchange);
         let root = Block::from_fn(albedo.n_rows(), albedo.n_columns(), |i, band| albedo.get(i, band).sqrt());
@@ -132,6 +141,7 @@ impl System {
             scattering_root: Diagonal::new(root),
             repair_scale,
             is_self_adjoint: true,
+            hierarchy: Arc::new(hierarchy),
             report,
         }
     }
@@ -175,6 +185,11 @@ impl System {
     /// E, n × bands.
     pub fn emission(&self) -> &Block {
         &self.emission
+    }
+
+    /// Bundles gathered by where they are, finest groups first; see [`Bundles::hierarchy`].
+    pub fn hierarchy(&self) -> &Hierarchy {
+        &self.hierarchy
     }
 
     /// K = S G, unformed; S and G are its parts.
@@ -255,6 +270,7 @@ impl System {
             emission: &self.emission,
             absorption: self.absorption.as_ref(),
             self_adjoint: self.self_adjoint(Unknown::Radiance),
+            hierarchy: Some(&self.hierarchy),
         }
     }
 
@@ -316,6 +332,7 @@ impl AdjointSystem<'_> {
             emission: measurement,
             absorption: self.absorption.as_ref(),
             self_adjoint: self.system.self_adjoint(Unknown::Importance),
+            hierarchy: Some(&self.system.hierarchy),
         }
     }
 }

@@ -51,11 +51,12 @@ pub struct Bundles {
     facets: Vec<FacetPatches>,
 }
 
+/// The patches of one facet.
 #[derive(Clone, Debug)]
-struct FacetPatches {
-    grid: Grid,
-    first_front: usize,
-    first_back: Option<usize>,
+pub(super) struct FacetPatches {
+    pub grid: Grid,
+    pub first_front: usize,
+    pub first_back: Option<usize>,
 }
 
 /// Why a scene cannot be cut at this resolution.
@@ -149,6 +150,10 @@ impl Bundles {
     pub fn element_of(&self, bundle: usize) -> (usize, usize) {
         let element = self.first_bundle.partition_point(|first| *first <= bundle) - 1;
         (element, bundle - self.first_bundle[element])
+    }
+
+    pub(super) fn facets(&self) -> &[FacetPatches] {
+        &self.facets
     }
 
     /// μ of every bundle, m² sr.

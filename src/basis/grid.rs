@@ -88,6 +88,45 @@ impl Grid {
         }
     }
 
+    /// For every patch, in order, which tile of 2ᵏ × 2ᵏ patches it lies in; a triangle that is not cut evenly is one tile.
+    pub fn tiles(&self, k: u32) -> Vec<usize> {
+        match self {
+            Self::Quadrilateral { n, m, .. } => {
+                let across = (n >> k) + 1;
+                (0..*m).flat_map(|j| (0..*n).map(move |i| (j >> k) * across + (i >> k))).collect()
+            }
+            Self::Triangle { corners: [a, b, c], n } => {
+                if k >= n.trailing_zeros() + 1 {
+                    return vec![0; n * n];
+                }
+                let coarse = Self::Triangle { corners: [*a, *b, *c], n: n >> k };
+                let third = 1.0 / 3.0;
+                let centroid = |i: usize, j: usize, offset: f64| {
+                    let (s, t) = ((i as f64 + offset) / *n as f64, (j as f64 + offset) / *n as f64);
+                    *a * (1.0 - s - t) + *b * s + *c * t
+                };
+                let mut tiles = Vec::with_capacity(n * n);
+                for j in 0..*n {
+                    for i in 0..*n - j {
+                        tiles.push(coarse.locate(centroid(i, j, third)));
+                        if i + j + 1 < *n {
+                            tiles.push(coarse.locate(centroid(i, j, 2.0 * third)));
+                        }
+                    }
+                }
+                tiles
+            }
+            Self::Fan { triangles, .. } => {
+                let mut tiles = Vec::new();
+                for triangle in triangles {
+                    let first = tiles.len();
+                    tiles.extend(triangle.tiles(k).into_iter().map(|tile| first + tile));
+                }
+                tiles
+            }
+        }
+    }
+
     /// Which patch holds this point of the polygon. Points on borders go to one of the neighbours; points off the polygon by
     /// rounding go to the nearest patch.
     pub fn locate(&self, point: Vec3) -> usize {

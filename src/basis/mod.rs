@@ -5,5 +5,6 @@
 
 mod bundles;
 mod grid;
+mod hierarchy;
 
 pub use bundles::{BasisError, Bundles, Element, Patch, Resolution};

@@ -1,7 +1,7 @@
 //! The catalogue: every scene with its parameters filled in, by name.
 
 use super::{
-    Exact, cornell_box, corner_box, floating_block, furnace_cube, furnace_exact, furnace_sphere, parallel_plates,
+    Exact, cornell_box, corner_box, floating_block, furnace_cube, furnace_exact, furnace_sphere, maze, parallel_plates,
     spherical_crater, two_rooms,
 };
 use crate::scene::Scene;
@@ -24,7 +24,7 @@ pub struct Entry {
 /// Further than this many edits away, a name is not what was meant.
 const FURTHEST_SUGGESTION: usize = 2;
 
-static ENTRIES: [Entry; 8] = [
+static ENTRIES: [Entry; 9] = [
     Entry {
         name: "furnace-cube",
         summary: "closed unit cube of one albedo and emission; L = e/(1 - a) everywhere",
@@ -80,6 +80,14 @@ static ENTRIES: [Entry; 8] = [
         summary: "two bright closed rooms joined by a small door, a lamp in one: mixes slowly; exact energy balance",
         build: two_rooms::two_rooms,
         exact: || Some(two_rooms::two_rooms_exact()),
+        patch_size: 0.5,
+        closed: true,
+    },
+    Entry {
+        name: "maze",
+        summary: "six bright closed rooms joined by small doors, a lamp in the first: mixes slowest; energy balance",
+        build: maze::maze,
+        exact: || Some(maze::maze_exact()),
         patch_size: 0.5,
         closed: true,
     },

@@ -16,6 +16,7 @@ pub mod floating_block;
 pub mod furnace_cube;
 pub mod furnace_sphere;
 mod matte;
+pub mod maze;
 pub mod parallel_plates;
 mod shape;
 pub mod spherical_crater;
@@ -29,6 +30,7 @@ pub use exact::{Continuous, Exact, MeanRadiance, PointRadiance, UniformPatches, 
 pub use floating_block::floating_block;
 pub use furnace_cube::{furnace_cube, furnace_exact};
 pub use furnace_sphere::furnace_sphere;
+pub use maze::maze;
 pub use parallel_plates::{parallel_plates, parallel_plates_exact};
 pub use spherical_crater::{spherical_crater, spherical_crater_exact};
 pub use two_rooms::two_rooms;

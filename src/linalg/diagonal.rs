@@ -50,6 +50,10 @@ impl LinearOperator for Diagonal {
         self.row(band, column, out);
     }
 
+    fn diagonal(&self, band: usize, out: &mut [f64]) {
+        out.copy_from_slice(self.0.column(band));
+    }
+
     fn is_nonnegative(&self) -> bool {
         self.0.values().iter().all(|v| *v >= 0.0)
     }

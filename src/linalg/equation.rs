@@ -1,6 +1,6 @@
 //! The equation L = E + K L, as solvers and matrix estimators see it: operators and vectors, no scene.
 
-use super::{Block, LinearOperator};
+use super::{Block, Hierarchy, LinearOperator};
 
 /// L = E + K L, one column a band.
 ///
@@ -15,6 +15,8 @@ pub struct Equation<'a> {
     pub absorption: Option<&'a Block>,
     /// The self-adjoint form, where there is one.
     pub self_adjoint: Option<SelfAdjoint<'a>>,
+    /// Groups of unknowns that are near each other, where there are any.
+    pub hierarchy: Option<&'a Hierarchy>,
 }
 
 /// The same equation in the étendue inner product ⟨a, b⟩ = Σ μᵢ aᵢ bᵢ, with A = S^½ G S^½ and S^½ the positive semidefinite root of S:
@@ -49,7 +51,7 @@ pub enum Unknown {
 impl<'a> Equation<'a> {
     /// Of which no more is known than K and E.
     pub fn plain(transport: &'a dyn LinearOperator, emission: &'a Block) -> Self {
-        Self { transport, emission, absorption: None, self_adjoint: None }
+        Self { transport, emission, absorption: None, self_adjoint: None, hierarchy: None }
     }
 
     /// n.

@@ -3,6 +3,7 @@
 //! Every method is a struct of its parameters and a [`Solver`]. Iterative ones stop when ‖E + K L − L‖∞ ≤ tolerance · ‖E‖∞ in every
 //! band; running out of budget is a status, divergence and singularity are errors.
 
+mod accelerated;
 mod bracket;
 mod budget;
 mod direct;
@@ -11,8 +12,10 @@ mod krylov;
 mod monitor;
 mod report;
 mod self_adjoint;
+pub mod spectrum;
 mod stationary;
 
+pub use accelerated::{DeflatedCg, Perron, TwoGrid};
 pub use bracket::Bracket;
 pub use budget::{BUDGET, Budget};
 pub use direct::{Cholesky, Factored, Gth, LowRank, Lu, LuNalgebra, SingleLu, SparseCholesky, SparseLu};

@@ -28,10 +28,10 @@ fn seen_from(scene: &Scene, eye: Vec3, is_counted: impl Fn(&str) -> bool) -> f64
     outlines.flat_map(|v| v[1..].windows(2).map(|edge| solid_angle(eye, [v[0], edge[0], edge[1]]))).sum()
 }
 
-/// The lit room and the dim room are one cavity; the partition between them shows its front to one and its back to
-/// the other, and is no part of the hull.
+/// Rooms that doors join are one cavity; a partition between them shows its front to one and its back to another, and is no part of
+/// the hull.
 fn is_hull(surface: &str) -> bool {
-    surface != "partition"
+    !surface.starts_with("partition")
 }
 
 /// Points in the air of each closed scene, and points outside or inside of solids.
@@ -51,6 +51,10 @@ fn probes(name: &str) -> (Vec<Vec3>, Vec<Vec3>) {
         "two-rooms" => (
             points(&[[1.5, 2.4, 1.5], [3.0, 0.6, 1.5], [6.0, 1.0, 2.0]]),
             points(&[[-0.1, 1.0, 1.0], [1.5, 2.6, 1.5], [7.1, 1.0, 1.0]]),
+        ),
+        "maze" => (
+            points(&[[1.0, 1.9, 1.0], [2.0, 0.5, 0.5], [5.9, 0.1, 3.9], [0.1, 1.0, 2.1]]),
+            points(&[[-0.1, 1.0, 1.0], [3.0, 2.1, 1.0], [6.1, 0.5, 3.0]]),
         ),
         other => panic!("no probes for the closed scene '{other}'"),
     }
@@ -158,7 +162,7 @@ fn closed_scenes_surround_the_air_and_nothing_else() {
             assert!(seen.abs() < SUM_ROUNDING * 4.0 * PI, "{} from {eye}: {seen}", entry.name);
         }
     }
-    assert_eq!(closed().count(), 5);
+    assert_eq!(closed().count(), 6);
 }
 
 #[test]
@@ -233,12 +237,14 @@ fn energy_balances_name_the_emitted_power() {
         Some(Exact::AbsorbedPower { power }) => power,
         other => panic!("{name}: {other:?}"),
     };
-    // The corner box's ceiling is 1.0 × 1.2, the rooms' lamp 0.5 × 0.5.
+    // The corner box's ceiling is 1.0 × 1.2, the rooms' lamps 0.5 × 0.5.
     for (found, radiance) in power("corner-box").iter().zip([2.0, 1.5, 1.0]) {
         assert!((found - PI * 1.2 * radiance).abs() < 4.0 * f64::EPSILON * found);
     }
-    for (found, radiance) in power("two-rooms").iter().zip([50.0, 45.0, 40.0]) {
-        assert!((found - PI * 0.25 * radiance).abs() < 4.0 * f64::EPSILON * found);
+    for name in ["two-rooms", "maze"] {
+        for (found, radiance) in power(name).iter().zip([50.0, 45.0, 40.0]) {
+            assert!((found - PI * 0.25 * radiance).abs() < 4.0 * f64::EPSILON * found);
+        }
     }
 }
 
@@ -280,4 +286,14 @@ fn the_partition_closes_all_but_the_door() {
     let dim: f64 = scene.surfaces().iter().filter(|s| s.name.starts_with("dim")).map(|s| s.area()).sum();
     assert_eq!(lit, 2.0 * 9.0 + 3.0 * 7.5);
     assert_eq!(dim, 2.0 * 12.0 + 2.0 * 10.0 + 7.5);
+}
+
+#[test]
+fn partitions_of_the_maze_leave_five_doors() {
+    let scene = gallery::maze();
+    let partitions = scene.surfaces().iter().find(|s| s.name == "partitions").unwrap();
+    assert!(partitions.back.is_some());
+    assert_eq!(partitions.area(), 7.0 * 4.0 - 5.0 * 0.5);
+    let hull: f64 = scene.surfaces().iter().filter(|s| is_hull(&s.name)).map(Surface::area).sum();
+    assert_eq!(hull, 2.0 * 24.0 + 2.0 * 12.0 + 2.0 * 8.0);
 }

@@ -3,6 +3,7 @@
 // Reference values are given to more digits than an f64 holds.
 #![allow(clippy::excessive_precision, clippy::approx_constant, clippy::single_range_in_vec_init)]
 
+mod acceleration;
 mod check;
 mod cli;
 mod closure;
@@ -31,6 +32,7 @@ mod scenes;
 mod shadows;
 mod shafts;
 mod solvers;
+mod spectrum;
 mod sphere;
 mod stats;
 mod threads;

@@ -44,6 +44,7 @@ pub fn coarse() -> &'static [Case] {
             "corner-box" => 0.25,
             "floating-block" => 0.25,
             "two-rooms" => 1.0,
+            "maze" => 1.0,
             "spherical-crater" => 0.5,
             other => panic!("no coarse patch size for '{other}'"),
         };

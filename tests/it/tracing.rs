@@ -117,7 +117,8 @@ fn edge_point(stream: &mut Stream, mesh: &[Polygon], at_corner: bool) -> Vec3 {
 /// From the faces inwards, leaving out the polygon where the ray starts: also closed, T-junctions of the rooms included.
 #[test]
 fn no_ray_that_starts_on_a_closed_scene_escapes() {
-    for (s, name) in ["furnace-cube", "furnace-sphere", "corner-box", "floating-block", "two-rooms"].iter().enumerate()
+    for (s, name) in
+        ["furnace-cube", "furnace-sphere", "corner-box", "floating-block", "two-rooms", "maze"].iter().enumerate()
     {
         let polygons = polygons_of(name);
         let tracer = tracer_of(&polygons);

@@ -1,0 +1,232 @@
+//! A coarse space and its Galerkin equation, formed by reading every entry of K once.
+//!
+//! ```text
+//! B = K P,      C = Pᵀ W (I − K) P = diag(Pᵀ W a) + diag(F 1) − F,      F = Pᵀ W B,      a = 1 − K P 1
+//! ```
+//!
+//! P spreads a value a group over the unknowns of the group (those of weight zero left out), W weighs: where K is self-adjoint, so that
+//! W K is symmetric. What a row loses, a, is what it absorbs and what it hands to unknowns that are left out: known without
+//! subtracting, so that C is, too.
+//!
+//! On the way the strong entries of K are kept, see [`Near`].
+//!
+//! Corrections come as a constant and a rest, δ = P (β 1 + d), and what they do to a residual is told without a product with K:
+//! (I − K) P (β 1 + d) = β a + P d − B d.
+
+use super::super::SolveError;
+use super::near::{self, Near};
+use crate::linalg::{Aggregation, Block, Dense, Equation, LossFactor, SelfAdjoint, Unknown};
+use rayon::prelude::*;
+
+/// Rows that one task reads.
+const ROWS_A_TASK: usize = 32;
+
+/// Weights that make K self-adjoint, n × bands: μ/s for radiance, μ s for importance, and zero where s is; `None` if S^½ is not diagonal.
+pub fn weights(form: SelfAdjoint<'_>, n_bands: usize) -> Option<Block> {
+    let n = form.etendue.len();
+    let mut root = Block::zeros(n, n_bands);
+    form.scattering_root.apply(&Block::from_fn(n, n_bands, |_, _| 1.0), &mut root);
+    let wave = Block::from_fn(n, n_bands, |i, band| (1.618 * (i + band) as f64 + 1.0).sin());
+    let mut image = Block::zeros(n, n_bands);
+    form.scattering_root.apply(&wave, &mut image);
+    let is_diagonal = image
+        .values()
+        .iter()
+        .zip(root.values().iter().zip(wave.values()))
+        .all(|(image, (root, wave))| *image == root * wave);
+    let weight = |i: usize, band: usize| {
+        let scattering = root.get(i, band) * root.get(i, band);
+        match form.unknown {
+            _ if scattering == 0.0 => 0.0,
+            Unknown::Radiance => form.etendue[i] / scattering,
+            Unknown::Importance => form.etendue[i] * scattering,
+        }
+    };
+    is_diagonal.then(|| Block::from_fn(n, n_bands, weight))
+}
+
+/// One band of a coarse space.
+struct Band {
+    /// B, n × m.
+    spread: Dense,
+    /// a, n: what (I − K) P makes of 1 where P is one; where P is zero, minus what K P makes of 1.
+    loss: Vec<f64>,
+    factor: LossFactor,
+    near: Near,
+}
+
+/// A coarse space of every band.
+pub(super) struct Coarse<'a> {
+    aggregation: &'a Aggregation,
+    weights: Block,
+    bands: Vec<Band>,
+}
+
+impl<'a> Coarse<'a> {
+    /// Reads every row of every band of K once. `images` ← K `sources`, on the way: the bands of several blocks at no further reading.
+    ///
+    /// # Errors
+    /// A coarse equation that is singular, or has entries that are not finite.
+    pub fn new(
+        method: &'static str,
+        equation: Equation<'_>,
+        aggregation: &'a Aggregation,
+        weights: Block,
+        sources: &[&Block],
+        images: &mut [Block],
+    ) -> Result<Self, SolveError> {
+        let (n, m) = (equation.n_unknowns(), aggregation.n_groups());
+        let mut bands = Vec::with_capacity(equation.n_bands());
+        for band in 0..equation.n_bands() {
+            let weight = weights.column(band);
+            let is_left_out = weight.iter().any(|w| *w == 0.0);
+            let mut spread = Dense::zeros(n, m);
+            let mut loss = vec![0.0; n];
+            let mut products = vec![0.0; n * sources.len()];
+            let mut near: Vec<Vec<(u32, f64)>> = vec![Vec::new(); n];
+            let root: Vec<f64> = weight.iter().map(|w| w.sqrt()).collect();
+            let threshold = near::STRONG / n as f64;
+            let tasks =
+                spread.values_mut().par_chunks_mut(ROWS_A_TASK * m.max(1)).zip(loss.par_chunks_mut(ROWS_A_TASK));
+            let tasks = tasks
+                .zip(products.par_chunks_mut(ROWS_A_TASK * sources.len().max(1)))
+                .zip(near.par_chunks_mut(ROWS_A_TASK));
+            tasks.enumerate().for_each_init(
+                || vec![0.0; n],
+                |row, (task, (((spread, loss), products), near))| {
+                    for (k, ((gathered, loss), near)) in spread.chunks_mut(m.max(1)).zip(loss).zip(near).enumerate() {
+                        let i = task * ROWS_A_TASK + k;
+                        equation.transport.row(band, i, row);
+                        let dots = products[k * sources.len()..][..sources.len()].iter_mut().zip(sources);
+                        dots.for_each(|(dot, x)| *dot = row.iter().zip(x.column(band)).map(|(k, x)| k * x).sum());
+                        // Keep what is strong.
+                        let strong = row
+                            .iter()
+                            .enumerate()
+                            .filter(|(j, k)| root[i] * *k > threshold * root[*j] && root[*j] > 0.0);
+                        near.extend(strong.map(|(j, k)| (j as u32, *k)));
+                        // Gather the row by groups; what it hands to unknowns that are left out is lost.
+                        let mut handed = 0.0;
+                        if is_left_out {
+                            for ((k, group), w) in row.iter().zip(aggregation.groups()).zip(weight) {
+                                if *w == 0.0 { handed += k } else { gathered[group] += k }
+                            }
+                        } else {
+                            row.iter().zip(aggregation.groups()).for_each(|(k, group)| gathered[group] += k);
+                        }
+                        *loss = if weight[i] == 0.0 {
+                            -gathered.iter().sum::<f64>()
+                        } else {
+                            match equation.absorption {
+                                Some(absorption) => absorption.get(i, band) + handed,
+                                None => 1.0 - gathered.iter().sum::<f64>(),
+                            }
+                        };
+                    }
+                },
+            );
+            for (s, image) in images.iter_mut().enumerate() {
+                let column = image.column_mut(band).iter_mut().enumerate();
+                column.for_each(|(i, out)| *out = products[i * sources.len() + s]);
+            }
+
+            // Gather the rows.
+            let (mut flows, mut losses) = (Dense::zeros(m, m), vec![0.0; m]);
+            for (i, (group, w)) in aggregation.groups().zip(weight).enumerate() {
+                if *w > 0.0 {
+                    losses[group] += w * loss[i];
+                    flows.row_mut(group).iter_mut().zip(spread.row_slice(i)).for_each(|(f, b)| *f += w * b);
+                }
+            }
+            let factor =
+                LossFactor::new(flows, losses).map_err(|source| SolveError::Factor { method, band, source })?;
+            bands.push(Band { spread, loss, factor, near: Near::from_rows(&near) });
+        }
+        Ok(Self { aggregation, weights, bands })
+    }
+
+    /// m.
+    pub fn n_groups(&self) -> usize {
+        self.aggregation.n_groups()
+    }
+
+    /// Work of forming the coarse equation in products: K once, and the elimination's ⅓ m³ multiplications.
+    pub fn setup_work(&self) -> f64 {
+        let (n, m) = (self.aggregation.n_unknowns() as f64, self.n_groups() as f64);
+        1.0 + m * m * m / (3.0 * n * n)
+    }
+
+    /// Work of one pass over B and one coarse solve, in products.
+    pub fn pass_work(&self) -> f64 {
+        let ratio = self.n_groups() as f64 / self.aggregation.n_unknowns() as f64;
+        ratio + ratio * ratio
+    }
+
+    pub fn weight(&self, band: usize) -> &[f64] {
+        self.weights.column(band)
+    }
+
+    /// out ← Pᵀ W x of one band.
+    pub fn gather(&self, band: usize, x: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        for ((group, w), x) in self.aggregation.groups().zip(self.weight(band)).zip(x) {
+            out[group] += w * x;
+        }
+    }
+
+    /// out ← Bᵀ W x of one band. One pass over B.
+    pub fn gather_spread(&self, band: usize, x: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        for ((i, w), x) in self.weight(band).iter().enumerate().zip(x) {
+            let factor = w * x;
+            if factor != 0.0 {
+                out.iter_mut().zip(self.bands[band].spread.row_slice(i)).for_each(|(out, b)| *out += factor * b);
+            }
+        }
+    }
+
+    /// What the strong entries of one band do on their own.
+    pub fn near(&self, band: usize) -> &Near {
+        &self.bands[band].near
+    }
+
+    /// Work of [`Near::apply`] in products, in the fullest band.
+    pub fn near_work(&self) -> f64 {
+        let n = self.aggregation.n_unknowns() as f64;
+        self.bands.iter().map(|band| band.near.n_read()).max().unwrap_or(0) as f64 / (n * n)
+    }
+
+    /// q ← d of C (β 1 + d) = q, and β.
+    pub fn solve(&self, band: usize, q: &mut [f64]) -> f64 {
+        self.bands[band].factor.solve(q)
+    }
+
+    /// x ← x + P d of one band.
+    pub fn prolong(&self, band: usize, d: &[f64], x: &mut [f64]) {
+        for ((group, w), x) in self.aggregation.groups().zip(self.weight(band)).zip(x) {
+            if *w > 0.0 {
+                *x += d[group];
+            }
+        }
+    }
+
+    /// x ← x + β P 1 of one band.
+    pub fn prolong_constant(&self, band: usize, constant: f64, x: &mut [f64]) {
+        for (w, x) in self.weight(band).iter().zip(x) {
+            if *w > 0.0 {
+                *x += constant;
+            }
+        }
+    }
+
+    /// r ← r − (I − K) P (β 1 + d) of one band. One pass over B.
+    pub fn correct(&self, band: usize, constant: f64, d: &[f64], r: &mut [f64]) {
+        let Band { spread, loss, .. } = &self.bands[band];
+        let rows = self.aggregation.groups().zip(self.weight(band)).zip(loss).zip(r).enumerate();
+        for (i, (((group, w), loss), r)) in rows {
+            let gathered: f64 = spread.row_slice(i).iter().zip(d).map(|(b, d)| b * d).sum();
+            let own = if *w > 0.0 { d[group] } else { 0.0 };
+            *r += gathered - own - constant * loss;
+        }
+    }
+}

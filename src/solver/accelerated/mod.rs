@@ -1,0 +1,11 @@
+//! Methods that know which unknowns are near each other: what converges slowly is smooth, and is solved for on groups of them.
+
+mod coarse;
+mod deflated_cg;
+mod near;
+mod shifted;
+mod two_grid;
+
+pub(super) use coarse::weights as self_adjoint_weights;
+pub use deflated_cg::DeflatedCg;
+pub use two_grid::{Perron, TwoGrid};

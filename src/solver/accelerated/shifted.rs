@@ -1,0 +1,28 @@
+//! A field near a constant, as the constant and the rest: L = α P 1 + v.
+//!
+//! Where little is absorbed L is nearly the same everywhere and 1/(1 − a) times brighter than what is emitted; kept apart, the constant
+//! costs the rest no digits, and the residual of both, r = E − α a + K v − v, none either.
+
+use super::coarse::Coarse;
+use crate::linalg::Block;
+
+/// α of every band and v.
+pub(super) struct Shifted {
+    pub constants: Vec<f64>,
+    pub rest: Block,
+}
+
+impl Shifted {
+    /// v = E, α = 0.
+    pub fn at(emission: &Block) -> Self {
+        Self { constants: vec![0.0; emission.n_columns()], rest: emission.clone() }
+    }
+
+    /// out ← α P 1 + v.
+    pub fn write(&self, coarse: &Coarse<'_>, out: &mut Block) {
+        out.copy_from(&self.rest);
+        for (band, constant) in self.constants.iter().enumerate() {
+            coarse.prolong_constant(band, *constant, out.column_mut(band));
+        }
+    }
+}

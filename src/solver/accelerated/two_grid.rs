@@ -1,0 +1,122 @@
+//! The two-grid method: a bounce on the fine grid, and what it leaves of the coarse space removed.
+//!
+//! ```text
+//! δ = r + P C⁻¹ Pᵀ W K r,      L ← L + δ,      r ← K r − (I − K) P C⁻¹ Pᵀ W K r = Π K r
+//! ```
+//!
+//! which is Atkinson's and Brakhage's iteration with a Galerkin coarse equation C = Pᵀ W (I − K) P, solved directly. What converges is
+//! the Neumann series of K with the coarse space projected out: its factor is the spectral radius of Π K, which for smooth kernels falls
+//! with the size of the groups and knows nothing of the albedo. With one group only the leading mode is taken out: Perron deflation.
+//!
+//! Needs a coarse equation that is not singular, as that of K ≥ 0 with some absorption; takes any K. Every entry of K is read once to set
+//! up, which also gives the first bounce; then one product an iteration, and a pass over the n × m matrix K P. Source: Brakhage
+//! (1960); Atkinson (1976), §5.3; as an iterated Galerkin correction, Hackbusch (1985), §16.
+
+use super::super::monitor::Monitor;
+use super::super::report::{conclude, relative_residual};
+use super::super::{Observer, Solution, SolveError, Solver};
+use super::coarse::{self, Coarse};
+use super::shifted::Shifted;
+use crate::linalg::{Aggregation, Block, Equation};
+
+/// Bounces and coarse corrections until the residual is below the tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwoGrid {
+    /// On ‖E + K L − L‖∞ / ‖E‖∞.
+    pub tolerance: f64,
+    /// Most groups that the coarse equation may have; by default n^⅔, whose elimination costs a third of a product.
+    pub n_groups: Option<usize>,
+}
+
+/// [`TwoGrid`] with a single group: the Neumann series without its slowest mode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Perron {
+    /// On ‖E + K L − L‖∞ / ‖E‖∞.
+    pub tolerance: f64,
+}
+
+impl Solver for TwoGrid {
+    fn name(&self) -> &'static str {
+        "two-grid"
+    }
+
+    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+        iterate(
+            Monitor::new(self.name(), equation, self.tolerance, observer),
+            self.name(),
+            equation,
+            &level(equation, self.n_groups),
+        )
+    }
+}
+
+impl Solver for Perron {
+    fn name(&self) -> &'static str {
+        "perron"
+    }
+
+    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+        iterate(
+            Monitor::new(self.name(), equation, self.tolerance, observer),
+            self.name(),
+            equation,
+            &level(equation, Some(1)),
+        )
+    }
+}
+
+/// The finest level of the hierarchy with no more groups than wanted; everything in one group where there is none.
+pub(super) fn level(equation: Equation<'_>, n_groups: Option<usize>) -> Aggregation {
+    let n = equation.n_unknowns();
+    let most = n_groups.unwrap_or((n as f64).powf(2.0 / 3.0) as usize).max(1);
+    let found = equation.hierarchy.and_then(|hierarchy| hierarchy.finest_within(most));
+    found.cloned().unwrap_or_else(|| Aggregation::whole(n))
+}
+
+/// Weights that make K self-adjoint, or ones.
+pub(super) fn weights_or_ones(equation: Equation<'_>) -> Block {
+    let n_bands = equation.n_bands();
+    let weights = equation.self_adjoint.and_then(|form| coarse::weights(form, n_bands));
+    weights.unwrap_or_else(|| Block::from_fn(equation.n_unknowns(), n_bands, |_, _| 1.0))
+}
+
+fn iterate(
+    mut monitor: Monitor<'_>,
+    method: &'static str,
+    equation: Equation<'_>,
+    aggregation: &Aggregation,
+) -> Result<Solution, SolveError> {
+    // Read K once: the coarse equation, and the first bounce.
+    let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
+    let mut first = [Block::zeros(n, n_bands)];
+    let weights = weights_or_ones(equation);
+    let coarse = Coarse::new(method, equation, aggregation, weights, &[equation.emission], &mut first)?;
+    monitor.work.products += coarse.setup_work();
+    let [mut residual] = first;
+
+    let mut field = Shifted::at(equation.emission);
+    let (mut radiance, mut next) = (equation.emission.clone(), Block::zeros(n, n_bands));
+    let mut gathered = vec![0.0; coarse.n_groups()];
+    let stop = loop {
+        // Take what is left of the coarse space out of the residual.
+        for band in 0..n_bands {
+            coarse.gather(band, residual.column(band), &mut gathered);
+            let constant = coarse.solve(band, &mut gathered);
+            field.constants[band] += constant;
+            coarse.prolong(band, &gathered, field.rest.column_mut(band));
+            coarse.correct(band, constant, &gathered, residual.column_mut(band));
+        }
+        monitor.work.products += coarse.pass_work();
+        field.write(&coarse, &mut radiance);
+        if let Some(stop) = monitor.check(relative_residual(equation.emission, &residual), &radiance)? {
+            break stop;
+        }
+
+        // Let the residual bounce once.
+        field.rest.add_scaled(1.0, &residual);
+        equation.transport.apply(&residual, &mut next);
+        monitor.count_applies(1);
+        std::mem::swap(&mut residual, &mut next);
+    };
+    conclude(method, equation, radiance, stop, monitor.work, monitor.history)
+}

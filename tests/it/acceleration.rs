@@ -1,0 +1,201 @@
+//! Methods with a coarse space: as fast for nearly white scenes as for grey ones.
+
+use super::scenes::{self, Case};
+use etendue::assembly::Transport;
+use etendue::compare::relative_max;
+use etendue::linalg::{Block, Diagonal, Equation, Hierarchy, LinearOperator, SelfAdjoint, Unknown};
+use etendue::solver::{Cg, DeflatedCg, Gth, Iteration, Perron, Solution, SolveError, Solver, Stop, TwoGrid};
+use std::ops::ControlFlow;
+
+/// Asked of the residual, and of the error against elimination without subtraction.
+const TOLERANCE: f64 = 1e-12;
+
+/// A case with other albedos: every one that is not zero set to this, or none changed.
+struct Painted<'a> {
+    case: &'a Case,
+    transport: Transport,
+    root: Diagonal,
+    absorption: Block,
+}
+
+impl<'a> Painted<'a> {
+    fn new(case: &'a Case, albedo: Option<f64>) -> Self {
+        let system = &case.system;
+        let own = system.transport().scattering().values();
+        let (n, n_bands) = (system.n_bundles(), system.n_bands());
+        let chosen = |i: usize, band: usize| match albedo {
+            Some(albedo) if own.get(i, band) > 0.0 => albedo,
+            _ => own.get(i, band),
+        };
+        let albedo = Block::from_fn(n, n_bands, chosen);
+        let absorption = Block::from_fn(n, n_bands, |i, band| {
+            let a = albedo.get(i, band);
+            (1.0 - a) + a * system.sinks().row(i).sum::<f64>() / system.etendue()[i]
+        });
+        let root = Diagonal::new(Block::from_fn(n, n_bands, |i, band| albedo.get(i, band).sqrt()));
+        let transport = Transport::new(Diagonal::new(albedo), system.transport().propagation().clone());
+        Self { case, transport, root, absorption }
+    }
+
+    fn equation(&self) -> Equation<'_> {
+        let system = &self.case.system;
+        Equation {
+            transport: &self.transport,
+            emission: system.emission(),
+            absorption: Some(&self.absorption),
+            self_adjoint: Some(SelfAdjoint {
+                etendue: system.etendue(),
+                propagation: system.transport().propagation(),
+                scattering_root: &self.root,
+                unknown: Unknown::Radiance,
+            }),
+            hierarchy: Some(system.hierarchy()),
+        }
+    }
+}
+
+fn solve(solver: &dyn Solver, equation: Equation<'_>) -> Solution {
+    solver.solve(equation, &mut ()).unwrap_or_else(|error| panic!("{}: {error}", solver.name()))
+}
+
+/// The criterion: at most 12 products in single rooms and 20 where rooms are joined, to 1e-12, whatever is absorbed. Products count the
+/// reading of K for the coarse equation, its elimination, and every pass over what is stored beside K.
+#[test]
+fn the_albedo_does_not_matter() {
+    for (name, patch_size, most) in [
+        ("furnace-cube", 0.125, 12.0),
+        ("cornell-box", 0.2, 12.0),
+        ("corner-box", 0.12, 12.0),
+        ("two-rooms", 0.5, 20.0),
+        ("maze", 0.5, 20.0),
+    ] {
+        let case = Case::new(name, patch_size);
+        for albedo in [None, Some(0.9), Some(0.999), Some(1.0 - 1e-6), Some(1.0 - 1e-12)] {
+            let painted = Painted::new(&case, albedo);
+            let reference = solve(&Gth, painted.equation());
+            let answer = solve(&DeflatedCg { tolerance: TOLERANCE, n_groups: None }, painted.equation());
+            let report = &answer.report;
+            let label = format!("{name} at {albedo:?}: {} products", report.products);
+            assert_eq!(report.stop, Stop::Converged, "{label}");
+            assert!(report.products <= most, "{label}");
+            let error = relative_max(&answer.radiance, &reference.radiance);
+            assert!(error <= 2.0 * TOLERANCE, "{label}, error {error:e}");
+            // What can be verified from L alone: rounding L leaves so many ulp of it in its residual.
+            let scale = (answer.radiance.max_abs() / case.system.emission().max_abs()).max(1.0);
+            assert!(report.true_residual <= TOLERANCE * scale, "{label}, residual {:e}", report.true_residual);
+        }
+    }
+}
+
+/// Undeflated, the same albedos cost ever more products and all the digits.
+#[test]
+fn plain_conjugate_gradients_lose_what_deflation_keeps() {
+    let case = Case::new("two-rooms", 0.5);
+    let painted = Painted::new(&case, Some(1.0 - 1e-12));
+    let reference = solve(&Gth, painted.equation());
+    let plain = solve(&Cg { tolerance: TOLERANCE }, painted.equation());
+    assert!(relative_max(&plain.radiance, &reference.radiance) > 1e-6 && plain.report.products > 40.0);
+    let two_grid = solve(&TwoGrid { tolerance: TOLERANCE, n_groups: None }, painted.equation());
+    assert!(relative_max(&two_grid.radiance, &reference.radiance) <= TOLERANCE);
+    assert!(two_grid.report.products < plain.report.products);
+}
+
+/// Mean radiance of every surface that reflects, band 0.
+fn means(case: &Case, radiance: &Block) -> Vec<f64> {
+    let n_surfaces = case.scene.surfaces().len();
+    let (mut sums, mut weights) = (vec![0.0; n_surfaces], vec![0.0; n_surfaces]);
+    for i in 0..case.system.n_bundles() {
+        let surface = case.scene.facets()[case.bundles.patch(i).unwrap().facet].surface;
+        sums[surface] += case.system.etendue()[i] * radiance.get(i, 0);
+        weights[surface] += case.system.etendue()[i];
+    }
+    sums.iter().zip(&weights).map(|(sum, weight)| sum / weight).collect()
+}
+
+fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| ((a - b) / b).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn three_products_reach_the_error_of_the_mesh() {
+    for (name, coarse, fine) in [("corner-box", 0.2, 0.1), ("two-rooms", 0.5, 0.25)] {
+        let (case, finer) = (Case::new(name, coarse), Case::new(name, fine));
+        let solved = |case: &Case| solve(&Cg { tolerance: TOLERANCE }, case.system.equation()).radiance;
+        let (truth, reference) = (solved(&case), solved(&finer));
+        let mesh_error = largest_difference(&means(&case, &truth), &means(&finer, &reference));
+        // The last iterate that three products had paid for.
+        let mut afforded = None;
+        let mut watch = |iteration: Iteration<'_>| {
+            if iteration.products > 3.0 {
+                return ControlFlow::Break(());
+            }
+            afforded = Some(iteration.iterate.clone());
+            ControlFlow::Continue(())
+        };
+        let solver = TwoGrid { tolerance: TOLERANCE, n_groups: None };
+        solver.solve(case.system.equation(), &mut watch).unwrap();
+        let error = largest_difference(&means(&case, &afforded.unwrap()), &means(&case, &truth));
+        assert!(error < mesh_error, "{name}: {error:e}, mesh {mesh_error:e}");
+    }
+}
+
+#[test]
+fn importance_is_solved_alike() {
+    let case = scenes::find("corner-box");
+    let measurement = Block::from_fn(case.system.n_bundles(), case.system.n_bands(), |i, _| f64::from(i % 7 == 0));
+    let adjoint = case.system.adjoint();
+    let reference = solve(&Gth, adjoint.equation(&measurement));
+    let solvers: [&dyn Solver; 3] = [
+        &DeflatedCg { tolerance: TOLERANCE, n_groups: None },
+        &TwoGrid { tolerance: TOLERANCE, n_groups: None },
+        &Perron { tolerance: TOLERANCE },
+    ];
+    for solver in solvers {
+        let answer = solve(solver, adjoint.equation(&measurement));
+        let error = relative_max(&answer.radiance, &reference.radiance);
+        assert!(error < 10.0 * TOLERANCE, "{}: {error:e}", solver.name());
+    }
+}
+
+#[test]
+fn equations_without_a_form_are_solved_on_their_rows_or_refused() {
+    let case = scenes::find("cornell-box");
+    let plain = Equation::plain(case.system.transport(), case.system.emission());
+    let reference = solve(&Gth, plain);
+    for (solver, n_groups) in [(None, 1), (Some(1), 1), (Some(8), 8)] {
+        let hierarchy: Option<&Hierarchy> = (n_groups > 1).then(|| case.system.hierarchy());
+        let answer = solve(&TwoGrid { tolerance: TOLERANCE, n_groups: solver }, Equation { hierarchy, ..plain });
+        assert!(relative_max(&answer.radiance, &reference.radiance) < 10.0 * TOLERANCE);
+    }
+    let refused = DeflatedCg { tolerance: TOLERANCE, n_groups: None }.solve(plain, &mut ());
+    assert_eq!(refused.err(), Some(SolveError::NoSelfAdjointForm { method: "deflated-cg" }));
+
+    // One patch said to be larger than it is.
+    let form = case.system.equation().self_adjoint.unwrap();
+    let mut etendue = form.etendue.to_vec();
+    etendue[0] *= 1.001;
+    let self_adjoint = Some(SelfAdjoint { etendue: &etendue, ..form });
+    let refused = DeflatedCg { tolerance: TOLERANCE, n_groups: None }
+        .solve(Equation { self_adjoint, ..case.system.equation() }, &mut ());
+    assert!(matches!(refused, Err(SolveError::NotSelfAdjoint { method: "deflated-cg", .. })));
+}
+
+#[test]
+fn hierarchies_follow_facets_and_sides() {
+    let case = Case::new("two-rooms", 0.5);
+    let (levels, n) = (case.system.hierarchy().levels(), case.system.n_bundles());
+    assert!(levels[0].n_groups() < n && levels.last().unwrap().n_groups() == 1);
+    for pair in levels.windows(2) {
+        assert!(pair[0].onto(&pair[1]).is_some() && pair[1].n_groups() < pair[0].n_groups());
+    }
+    // No group but the last has patches of two planes or two sides.
+    for level in &levels[..levels.len() - 2] {
+        let mut kinds = vec![None; level.n_groups()];
+        for i in 0..n {
+            let patch = case.bundles.patch(i).unwrap();
+            let kind = (patch.facet, patch.side);
+            assert_eq!(*kinds[level.group_of(i)].get_or_insert(kind), kind);
+        }
+    }
+    assert_eq!(case.system.transport().n_rows(), n);
+}
