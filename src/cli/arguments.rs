@@ -72,6 +72,8 @@ pub enum Command {
     /// Solve a scene by one method and print its light field
     #[command(after_help = SOLVE_EXAMPLES)]
     Solve(Solve),
+    /// Spectral radius, eigenvalues and singular values of K, and the bounces they ask for
+    Spectrum(Spectrum),
     /// Derivatives of a sensor's reading with respect to every albedo and emission, from one adjoint solution
     #[command(after_help = SENSITIVITY_EXAMPLES)]
     Sensitivity(Sensitivity),
@@ -187,6 +189,24 @@ pub struct Solve {
 }
 
 #[derive(Debug, Args)]
+pub struct Spectrum {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+
+    /// Leading eigenvalues and singular values to find
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = pairs, allow_negative_numbers = true)]
+    pub pairs: usize,
+
+    /// Stop at this relative residual of each
+    #[arg(long, value_name = "RESIDUAL", default_value = "1e-10", value_parser = positive, allow_negative_numbers = true)]
+    pub tolerance: f64,
+
+    /// Folder to write, whole or not at all [default: out/SCENE-spectrum]
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub struct Sensitivity {
     #[command(flatten)]
     pub scene: SceneArguments,
@@ -258,6 +278,10 @@ fn threads(text: &str) -> Result<usize, String> {
 
 fn rays(text: &str) -> Result<usize, String> {
     whole(text, 1, 1 << 30).map(|n| n as usize)
+}
+
+fn pairs(text: &str) -> Result<usize, String> {
+    whole(text, 1, 256).map(|n| n as usize)
 }
 
 fn samples(text: &str) -> Result<u64, String> {

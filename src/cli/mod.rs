@@ -14,6 +14,7 @@ mod record;
 mod scene;
 mod sensitivity;
 mod solve;
+mod spectrum;
 mod study;
 mod table;
 
@@ -46,6 +47,7 @@ fn run(arguments: &Arguments, command: Vec<String>) -> Result<(), Failure> {
     match &arguments.command {
         Command::Study(study) => study::run(arguments, study, command),
         Command::Solve(solve) => solve::run(arguments, solve, command),
+        Command::Spectrum(asked) => spectrum::run(arguments, asked, command),
         Command::Sensitivity(asked) => sensitivity::run(arguments, asked, command),
         Command::Export(export) => export::run(arguments, export, command),
         Command::Check(check) => check::run(arguments, check),

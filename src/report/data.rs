@@ -1,7 +1,7 @@
 //! The numbers behind the figures and tables, as CSV.
 
 use super::csv::{Csv, Field};
-use crate::study::{EstimatorRun, Refinement, SolverRun, Truncation};
+use crate::study::{BandSpectrum, EstimatorRun, Refinement, SolverRun, Truncation};
 
 /// solver, iteration, products, residual, error: one row an iteration.
 pub fn convergence(solvers: &[SolverRun]) -> Vec<u8> {
@@ -42,6 +42,17 @@ pub fn solvers(solvers: &[SolverRun]) -> Vec<u8> {
             Field::Number(run.error),
             run.error_bound.map_or(Field::Text(""), Field::Number),
         ]);
+    }
+    csv.into_bytes()
+}
+
+/// band, real, imaginary, radius: one row an eigenvalue.
+pub fn spectrum(bands: &[BandSpectrum]) -> Vec<u8> {
+    let mut csv = Csv::new(&["band", "real", "imaginary", "radius"]);
+    for band in bands {
+        for [re, im] in &band.eigenvalues {
+            csv.row(&[Field::Text(&band.band), Field::Number(*re), Field::Number(*im), Field::Number(band.radius[1])]);
+        }
     }
     csv.into_bytes()
 }

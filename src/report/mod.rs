@@ -12,7 +12,7 @@ mod render;
 
 pub use error::{Foreign, ReportError};
 pub use folder::{check_folder, write_whole};
-pub use render::render;
+pub use render::{render, spectrum_files};
 
 /// One file of a report.
 #[derive(Clone, Debug, PartialEq, Eq)]

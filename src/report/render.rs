@@ -1,10 +1,10 @@
 //! From an outcome to all files of its report.
 
-use super::figure::{Sheet, convergence, monte_carlo, refinement, to_png, to_svg, truncation};
+use super::figure::{Sheet, convergence, monte_carlo, refinement, spectrum, to_png, to_svg, truncation};
 use super::page::{FigureOnPage, page};
 use super::picture::pictures;
 use super::{Artifact, ReportError, SCHEMA, data};
-use crate::study::StudyOutcome;
+use crate::study::{SpectrumOutcome, StudyOutcome};
 use serde::Serialize;
 
 /// `report.json`: the outcome, the version of its layout, and the names of the files beside it.
@@ -52,6 +52,13 @@ pub fn render(outcome: &StudyOutcome) -> Result<Vec<Artifact>, ReportError> {
     let names = files.iter().map(|file| file.name.as_str()).collect();
     let json = serde_json::to_vec_pretty(&Document { schema: SCHEMA, outcome, files: names })?;
     files.insert(1, Artifact { name: "report.json".into(), bytes: json });
+    Ok(files)
+}
+
+/// The figure of a spectrum as SVG, PNG and the CSV of its numbers.
+pub fn spectrum_files(outcome: &SpectrumOutcome) -> Result<Vec<Artifact>, ReportError> {
+    let mut files = Vec::new();
+    draw(&mut files, "spectrum", spectrum(&outcome.bands), data::spectrum(&outcome.bands))?;
     Ok(files)
 }
 

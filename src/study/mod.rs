@@ -8,6 +8,7 @@ mod refinement;
 mod repairs;
 mod run;
 mod sensitivity;
+mod spectrum;
 mod watch;
 
 pub use error::StudyError;
@@ -20,4 +21,5 @@ pub use provenance::Provenance;
 pub use refinement::surface_means;
 pub use run::{StudySettings, run, tessellations};
 pub use sensitivity::{Quantity, SensitivityOutcome, Sensor, SurfaceSensitivity, sensitivity, weights};
+pub use spectrum::{BandSpectrum, Bounces, Counted, SpectrumOutcome, spectrum};
 pub use watch::Watch;

@@ -47,6 +47,15 @@ impl Axis {
         Self { logarithmic: false, low: 0.0, high: 1.03 * high, labels, ticks: Vec::new() }
     }
 
+    /// Between two numbers of either sign, marked at multiples of 1, 2 or 5.
+    pub fn linear_between(low: f64, high: f64) -> Self {
+        let step = nice_step((high - low) / 6.0);
+        let multiples = (low / step).ceil() as i64..=(high / step).floor() as i64;
+        let name = |v: f64| if v < 0.0 { format!("−{}", significant(-v, 2)) } else { significant(v, 2) };
+        let labels = multiples.map(|k| k as f64 * step).map(|v| (v, name(v))).collect();
+        Self { logarithmic: false, low, high, labels, ticks: Vec::new() }
+    }
+
     fn log_between(low: f64, high: f64) -> Self {
         let (first, last) = ((low - 1e-9).ceil() as i32, (high + 1e-9).floor() as i32);
         let every = ((last - first) / MOST_LABELS + 1).max(1);

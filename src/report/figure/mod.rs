@@ -8,6 +8,7 @@ mod palette;
 mod panel;
 mod refinement;
 mod sheet;
+mod spectrum;
 mod strip;
 mod truncation;
 
@@ -16,5 +17,6 @@ pub use monte_carlo::monte_carlo;
 pub use paint::{to_png, to_svg};
 pub use refinement::refinement;
 pub use sheet::Sheet;
+pub use spectrum::spectrum;
 pub use strip::strip;
 pub use truncation::truncation;
