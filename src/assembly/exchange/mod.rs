@@ -221,6 +221,9 @@ pub(super) fn compute(
     Ok(Assembled { exchange, error, sinks, repair_scale, report })
 }
 
+/// So many times its error estimate what flows into a sink has to be to be taken for more than nothing.
+const TRUST: f64 = 4.0;
+
 /// One row of the upper triangle, and what its patch loses to sinks.
 struct Row {
     entries: Vec<Entry>,
@@ -253,8 +256,8 @@ impl Parts<'_> {
             } else {
                 (&mut row.lost, self.n_sources)
             };
-            // Nothing is lost to a sink that may be hidden as well: closed scenes stay closed.
-            let is_certain = j < self.n_sources || value * value > variance;
+            // Nothing is lost to a sink that may be hidden as well, even if the estimate is some way off: closed scenes stay closed.
+            let is_certain = j < self.n_sources || value > TRUST * flow.error();
             if value > 0.0 && is_certain {
                 list.push(Entry { column: (j - first) as u32, value, variance });
             }
