@@ -72,12 +72,6 @@ pub fn between(
     key: u64,
 ) -> Visibility {
     let occluders = &obstacles.tracer;
-    // What one solid does needs no looking at its facets.
-    if let (Occlusion::Exact { tolerance }, Some(candidates)) = (occlusion, candidates)
-        && obstacles.bodies.are_one_solid(candidates)
-    {
-        return integrated(obstacles, desk, candidates, [a, b], tolerance);
-    }
     let (one, other) = ((a.polygon, a.facet), (b.polygon, b.facet));
     let shaft = match candidates {
         None => Shaft::between(occluders, one, other),

@@ -54,13 +54,6 @@ impl Bodies {
         self.facet_of[handle as usize]
     }
 
-    /// True if all of these polygons are part of one body that has an inside.
-    pub fn are_one_solid(&self, handles: &[u32]) -> bool {
-        let Some(&first) = handles.first() else { return false };
-        let body = self.body_of(first);
-        self.get(body).faces.len() > 2 && handles.iter().all(|handle| self.body_of(*handle) == body)
-    }
-
     /// The face of its body that this polygon is part of.
     pub fn face_of(&self, handle: u32) -> u32 {
         self.face_of[handle as usize]
