@@ -1,26 +1,49 @@
-//! Assembly of T: the cost of one pair, and of all of them against the number of bundles on the Cornell box.
+//! Assembly of T: what one pair costs by its position and its tolerance, and what all pairs of the Cornell box do.
+//!
+//! A printed table; of every number the best of some turns, on one thread for pairs and on all for scenes.
 
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use etendue::assembly::{Exchange, Ladder, Nodes, assemble, unoccluded};
 use etendue::basis::{Bundles, Resolution};
 use etendue::gallery;
 use etendue::geometry::{Polygon, Vec3};
 use etendue::sampling::Stream;
 use std::hint::black_box;
+use std::time::Instant;
 
-fn scenes(criterion: &mut Criterion) {
+const N_TURNS: usize = 15;
+const TOLERANCES: [f64; 3] = [1e-13, 1e-10, 1e-7];
+
+fn main() {
+    // Cargo's test runner compiles benches and calls them with --test: nothing to do then.
+    if std::env::args().any(|argument| argument == "--test") {
+        return;
+    }
+    single_pairs();
+    scenes();
+}
+
+/// Seconds of the shortest of some turns: what interrupts one only makes it longer.
+fn shortest(n_turns: usize, mut turn: impl FnMut()) -> f64 {
+    let seconds = (0..n_turns).map(|_| {
+        let start = Instant::now();
+        turn();
+        start.elapsed().as_secs_f64()
+    });
+    seconds.fold(f64::INFINITY, f64::min)
+}
+
+fn scenes() {
     let scene = gallery::cornell_box();
-    let mut group = criterion.benchmark_group("assemble");
-    group.sample_size(10);
+    println!("\n{:>24} {:>9} {:>9} {:>11}", "cornell-box, patches", "seconds", "facing", "ns a pair");
     for patch_size in [0.5, 0.25, 0.125] {
         let bundles = Bundles::new(&scene, Resolution { patch_size, n_directions: 1 }).expect("a resolution");
-        let n = bundles.n_bundles();
-        group.throughput(Throughput::Elements((n * (n - 1) / 2) as u64));
-        group.bench_with_input(BenchmarkId::new("pairs", n), &bundles, |b, bundles| {
-            b.iter(|| assemble(&scene, black_box(bundles), Exchange::default()).expect("a diffuse scene"));
+        let mut n_pairs = 0;
+        let seconds = shortest(3, || {
+            let system = assemble(&scene, &bundles, Exchange::default()).expect("a diffuse scene");
+            n_pairs = system.report().n_pairs;
         });
+        println!("{:>24} {seconds:>9.3} {n_pairs:>9} {:>11.0}", bundles.n_bundles(), 1e9 * seconds / n_pairs as f64);
     }
-    group.finish();
 }
 
 /// A rectangle with a corner, an edge, and the side on which the rest is.
@@ -52,7 +75,7 @@ fn pairs(ladder: &Ladder, place: impl Fn([Vec3; 6], f64) -> [Vec<Vec3>; 2]) -> V
     found
 }
 
-fn single_pairs(criterion: &mut Criterion) {
+fn single_pairs() {
     let ladder = Ladder::new();
     let apart = |least: f64, most: f64| {
         move |[a, b, c, d, e, f]: [Vec3; 6], u: f64| {
@@ -67,25 +90,25 @@ fn single_pairs(criterion: &mut Criterion) {
     // Distances of centres in diameters: at two, a diameter is between the circumscribed circles.
     let families = [
         ("2 to 11 diameters", pairs(&ladder, apart(2.0, 11.0))),
+        ("1 to 10 diameters", pairs(&ladder, apart(1.0, 10.0))),
         ("1 to 2 diameters", pairs(&ladder, apart(1.0, 2.0))),
         ("sharing an edge", pairs(&ladder, |[a, b, c, _, _, f], _| [rectangle(a, b, c), rectangle(b, a, f)])),
         ("sharing a corner", pairs(&ladder, |[a, b, c, _, e, f], _| [rectangle(a, b, c), rectangle(a, e, f)])),
     ];
-    let mut group = criterion.benchmark_group("pairs");
+    print!("{:24}", "rectangles, ns a pair");
+    TOLERANCES.iter().for_each(|tolerance| print!(" {:>20}", format!("to {tolerance:e}")));
+    println!();
     for (name, pairs) in &families {
-        group.throughput(Throughput::Elements(pairs.len() as u64));
-        for tolerance in [1e-13, 1e-10, 1e-7] {
-            group.bench_with_input(BenchmarkId::new(*name, format!("{tolerance:e}")), pairs, |bencher, pairs| {
-                bencher.iter(|| {
-                    for [(a, of_a), (b, of_b)] in pairs {
-                        black_box(unoccluded(&ladder, (a, of_a), (b, of_b), tolerance));
-                    }
-                });
+        print!("{name:24}");
+        for tolerance in TOLERANCES {
+            let seconds = shortest(N_TURNS, || {
+                for [(a, of_a), (b, of_b)] in pairs {
+                    black_box(unoccluded(&ladder, (a, of_a), (b, of_b), tolerance));
+                }
             });
+            let each = seconds / pairs.len() as f64;
+            print!(" {:>8.0} {:>9.1e}/s", 1e9 * each, 1.0 / each);
         }
+        println!();
     }
-    group.finish();
 }
-
-criterion_group!(benches, scenes, single_pairs);
-criterion_main!(benches);
