@@ -161,8 +161,11 @@ impl Parts<'_> {
 /// A value depends on its pair alone, not on who asked first: results have the same bits on any number of threads.
 struct Alike {
     /// By the second of the pair, a shelf for every first one: those of a row stay near each other in memory.
-    shelves: Vec<Mutex<HashMap<usize, Option<(f64, f64)>>>>,
+    shelves: Vec<Mutex<Shelf>>,
 }
+
+/// T of what faces each other, and its error.
+type Shelf = HashMap<usize, Option<(f64, f64)>>;
 
 impl Alike {
     fn new(n_patches: usize) -> Self {
