@@ -1,4 +1,4 @@
-//! Deterministic answers to L = E + K L, one file a method. Knows operators and vectors, never a scene.
+//! Deterministic answers to L = E + K L, one file a method: direct, stationary and Krylov. Knows operators and vectors, never a scene.
 //!
 //! Every method is a struct of its parameters and a [`Solver`]. Iterative ones stop when ‖E + K L − L‖∞ ≤ tolerance · ‖E‖∞ in every
 //! band; running out of budget is a status, divergence and singularity are errors.
@@ -52,7 +52,7 @@ pub trait Solver {
 /// One iterate on its way to an observer.
 #[derive(Clone, Copy)]
 pub struct Iteration<'a> {
-    /// 0 is the first iterate that the method has a residual for: its starting guess, or for Gauss–Seidel the first sweep.
+    /// 0 is the first iterate that the method has a residual for: its starting guess, or for methods that sweep the first sweep.
     pub index: usize,
     /// Work so far in products with K: entries touched / entries of K.
     pub products: f64,
@@ -94,7 +94,7 @@ pub fn all(tolerance: f64) -> Vec<Box<dyn Solver>> {
         Box::new(SparseLu),
         Box::new(SparseCholesky),
         Box::new(SingleLu { tolerance }),
-        Box::new(LowRank { tolerance, rank_tolerance: 0.25, seed: 0 }),
+        Box::new(LowRank { tolerance, rank_tolerance: 0.5, seed: 0 }),
         Box::new(LuNalgebra),
         Box::new(Neumann { tolerance }),
         Box::new(Jacobi { tolerance }),

@@ -380,10 +380,10 @@ fn eliminate_in_double(transport: &Dense, absorption: &[f64], emission: &[f64]) 
         .collect();
     for p in 0..n {
         for r in p + 1..n {
-            let factor = a[r][p].over(a[p][p]);
-            for c in p..=n {
-                a[r][c] = a[r][c].minus(factor.times(a[p][c]));
-            }
+            let (above, below) = a.split_at_mut(r);
+            let (pivot, row) = (&above[p], &mut below[0]);
+            let factor = row[p].over(pivot[p]);
+            row.iter_mut().zip(pivot).skip(p).for_each(|(v, pivot)| *v = v.minus(factor.times(*pivot)));
         }
     }
     let mut x = vec![single(0.0); n];

@@ -60,12 +60,14 @@ impl Preconditioner for LowRank {
             let mut image = Block::zeros(rank, rank);
             range.coefficients.apply(&range.basis, &mut image);
             let core = Dense::from_fn(rank, rank, |r, c| f64::from(u8::from(r == c)) - image.get(r, c));
-            let core = LuFactor::new(&core).map_err(factored)?;
+            let mut inverse = Block::from_fn(rank, rank, |r, c| f64::from(u8::from(r == c)));
+            LuFactor::new(&core).map_err(factored)?.solve(&mut inverse);
+            let core = Dense::from_fn(rank, rank, |r, c| inverse.get(r, c));
             work.products += range.n_products as f64 / equation.n_bands() as f64;
             work.n_fill = work.n_fill.max(Some(rank * (2 * equation.n_unknowns() + rank)));
-            let within = Block::zeros(rank, 1);
+            let (within, solved) = (Block::zeros(rank, 1), Block::zeros(rank, 1));
             let column = Block::zeros(equation.n_unknowns(), 1);
-            bands.push(StandIn { range, core, within, column });
+            bands.push(StandIn { range, core, within, solved, column });
         }
         Ok(Box::new(StandIns(bands)))
     }
@@ -76,21 +78,22 @@ struct StandIns(Vec<StandIn>);
 
 struct StandIn {
     range: Range,
-    /// The factors of I − B Q.
-    core: LuFactor,
+    /// (I − B Q)⁻¹.
+    core: Dense,
     within: Block,
+    solved: Block,
     column: Block,
 }
 
 impl Prepared for StandIns {
     fn apply(&mut self, x: &Block, out: &mut Block, _: &mut Work) {
-        for (band, StandIn { range, core, within, column }) in self.0.iter_mut().enumerate() {
+        for (band, StandIn { range, core, within, solved, column }) in self.0.iter_mut().enumerate() {
             column.column_mut(0).copy_from_slice(x.column(band));
             range.coefficients.apply(column, within);
-            core.solve(within);
+            core.apply(within, solved);
             let out = out.column_mut(band);
             out.copy_from_slice(x.column(band));
-            for (q, share) in range.basis.columns().zip(within.column(0)) {
+            for (q, share) in range.basis.columns().zip(solved.column(0)) {
                 out.iter_mut().zip(q).for_each(|(y, q)| *y += share * q);
             }
         }
