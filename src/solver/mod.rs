@@ -15,7 +15,7 @@ mod self_adjoint;
 pub mod spectrum;
 mod stationary;
 
-pub use accelerated::{DeflatedCg, Perron, TwoGrid};
+pub use accelerated::{CoarseSpace, DeflatedCg, DeflatedGmres, Perron, TwoGrid};
 pub use bracket::Bracket;
 pub use budget::{BUDGET, Budget};
 pub use direct::{Cholesky, Factored, Gth, Lu, LuNalgebra, SingleLu, SparseCholesky, SparseLu};

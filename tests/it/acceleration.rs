@@ -4,7 +4,9 @@ use super::scenes::{self, Case};
 use etendue::assembly::Transport;
 use etendue::compare::relative_max;
 use etendue::linalg::{Block, Diagonal, Equation, Hierarchy, LinearOperator, SelfAdjoint, Unknown};
-use etendue::solver::{Cg, DeflatedCg, Gth, Iteration, Perron, Solution, SolveError, Solver, Stop, TwoGrid};
+use etendue::solver::{
+    Cg, DeflatedCg, DeflatedGmres, Gmres, Gth, Iteration, Perron, Solution, SolveError, Solver, Stop, TwoGrid,
+};
 use std::ops::ControlFlow;
 
 /// Asked of the residual, and of the error against elimination without subtraction.
@@ -198,4 +200,19 @@ fn hierarchies_follow_facets_and_sides() {
         }
     }
     assert_eq!(case.system.transport().n_rows(), n);
+}
+
+#[test]
+fn minimal_residuals_need_fewer_iterations_on_a_coarse_space() {
+    // Without the form nothing is known of symmetry.
+    let case = Case::new("two-rooms", 0.5);
+    let equation = Equation { self_adjoint: None, ..case.system.equation() };
+    let reference = solve(&Gth, equation);
+    let plain = solve(&Gmres { tolerance: TOLERANCE, restart: 30, preconditioner: None }, equation);
+    let deflated = solve(&DeflatedGmres { tolerance: TOLERANCE, n_groups: None }, equation);
+    for answer in [&plain, &deflated] {
+        assert!(relative_max(&answer.radiance, &reference.radiance) < 10.0 * TOLERANCE, "{}", answer.report.method);
+    }
+    assert_eq!(deflated.report.method, "deflated-gmres");
+    assert!(deflated.report.n_iterations < plain.report.n_iterations);
 }

@@ -56,13 +56,13 @@ struct Band {
 }
 
 /// A coarse space of every band.
-pub(super) struct Coarse<'a> {
-    aggregation: &'a Aggregation,
+pub(super) struct Coarse {
+    aggregation: Aggregation,
     weights: Block,
     bands: Vec<Band>,
 }
 
-impl<'a> Coarse<'a> {
+impl Coarse {
     /// Reads every row of every band of K once. `images` ← K `sources`, on the way: the bands of several blocks at no further reading.
     ///
     /// # Errors
@@ -70,7 +70,7 @@ impl<'a> Coarse<'a> {
     pub fn new(
         method: &'static str,
         equation: Equation<'_>,
-        aggregation: &'a Aggregation,
+        aggregation: Aggregation,
         weights: Block,
         sources: &[&Block],
         images: &mut [Block],
@@ -199,6 +199,16 @@ impl<'a> Coarse<'a> {
     /// q ← d of C (β 1 + d) = q, and β.
     pub fn solve(&self, band: usize, q: &mut [f64]) -> f64 {
         self.bands[band].factor.solve(q)
+    }
+
+    /// out ← K P (β 1 + d) of one band. One pass over B.
+    pub fn bounce(&self, band: usize, constant: f64, d: &[f64], out: &mut [f64]) {
+        let Band { spread, loss, .. } = &self.bands[band];
+        for (i, ((w, loss), out)) in self.weight(band).iter().zip(loss).zip(out).enumerate() {
+            let gathered: f64 = spread.row_slice(i).iter().zip(d).map(|(b, d)| b * d).sum();
+            let whole = if *w > 0.0 { 1.0 - loss } else { -loss };
+            *out = gathered + constant * whole;
+        }
     }
 
     /// x ← x + P d of one band.

@@ -45,7 +45,7 @@ impl Solver for TwoGrid {
             Monitor::new(self.name(), equation, self.tolerance, observer),
             self.name(),
             equation,
-            &level(equation, self.n_groups),
+            level(equation, self.n_groups),
         )
     }
 }
@@ -60,7 +60,7 @@ impl Solver for Perron {
             Monitor::new(self.name(), equation, self.tolerance, observer),
             self.name(),
             equation,
-            &level(equation, Some(1)),
+            level(equation, Some(1)),
         )
     }
 }
@@ -84,7 +84,7 @@ fn iterate(
     mut monitor: Monitor<'_>,
     method: &'static str,
     equation: Equation<'_>,
-    aggregation: &Aggregation,
+    aggregation: Aggregation,
 ) -> Result<Solution, SolveError> {
     // Read K once: the coarse equation, and the first bounce.
     let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
