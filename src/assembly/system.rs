@@ -128,12 +128,8 @@ impl System {
         let exchange = Arc::new(exchange);
         let root = Block::from_fn(albedo.n_rows(), albedo.n_columns(), |i, band| albedo.get(i, band).sqrt());
         let propagation = Propagation::new(exchange.clone(), etendue.clone());
-        let absorbed = |i: usize, band: usize| {
-            let a = albedo.get(i, band);
-            (1.0 - a) + a * (sinks.row(i).sum::<f64>() / etendue[i])
-        };
         let is_closed = report.repair.is_some();
-        let absorption = is_closed.then(|| Block::from_fn(albedo.n_rows(), albedo.n_columns(), absorbed));
+        let absorption = is_closed.then(|| absorption(&albedo, &sinks, &etendue));
         Self {
             exchange,
             exchange_error: Arc::new(error),
@@ -228,6 +224,22 @@ impl System {
         }
     }
 
+    /// The same scene with other albedos, n × bands in [0, 1], and the same T. Bundles keep their emission. Cost O(n): T is shared.
+    ///
+    /// # Panics
+    /// If the albedos have another shape than the emission.
+    pub fn with_albedo(&self, albedo: Block) -> Self {
+        assert_eq!((albedo.n_rows(), albedo.n_columns()), (self.n_bundles(), self.n_bands()));
+        let absorption = self.absorption.as_ref().map(|_| absorption(&albedo, &self.sinks, &self.etendue));
+        let root = Block::from_fn(albedo.n_rows(), albedo.n_columns(), |i, band| albedo.get(i, band).sqrt());
+        Self {
+            absorption,
+            transport: Transport::new(Diagonal::new(albedo), self.transport.propagation().clone()),
+            scattering_root: Diagonal::new(root),
+            ..self.clone()
+        }
+    }
+
     /// The unrepaired system closed by another method, and the sweeps it took. A system closed by rows is not self-adjoint. Copies T.
     pub fn repaired_by(&self, method: RepairMethod) -> (Self, usize) {
         let raw = self.without_repair();
@@ -295,6 +307,14 @@ impl System {
         incident.values_mut().iter_mut().for_each(|v| *v *= PI);
         incident
     }
+}
+
+/// 1 − Σⱼ Kᵢⱼ of a closed system, n × bands: what is absorbed, and what of the rest is lost.
+fn absorption(albedo: &Block, sinks: &Block, etendue: &[f64]) -> Block {
+    Block::from_fn(albedo.n_rows(), albedo.n_columns(), |i, band| {
+        let a = albedo.get(i, band);
+        (1.0 - a) + a * (sinks.row(i).sum::<f64>() / etendue[i])
+    })
 }
 
 /// A system looked at from the sensors: J = W + K* J with K* = G S.

@@ -38,6 +38,14 @@ pub trait Factorization: Send + Sync {
     fn solve_transpose(&self, x: &mut Block);
 }
 
+impl Dense {
+    /// # Errors
+    /// [`FactorError::NotFinite`] with the first entry that is not.
+    pub fn check_finite(&self) -> Result<(), FactorError> {
+        check_finite(self)
+    }
+}
+
 pub(super) fn check_finite(a: &Dense) -> Result<(), FactorError> {
     match a.values().iter().position(|v| !v.is_finite()) {
         None => Ok(()),

@@ -16,6 +16,9 @@ pub struct SingleLuFactor {
     factors: Mat<f32>,
     forward: Vec<usize>,
     backward: Vec<usize>,
+    /// Room to solve in.
+    rounded: Vec<f32>,
+    stack: MemBuffer,
 }
 
 impl SingleLuFactor {
@@ -39,30 +42,31 @@ impl SingleLuFactor {
         );
         match (0..n).map(|k| (k, factors[(k, k)])).find(|(_, pivot)| *pivot == 0.0 || !pivot.is_finite()) {
             Some((pivot, value)) => Err(FactorError::Singular { pivot, size: n, value: value.into() }),
-            None => Ok(Self { factors, forward, backward }),
+            None => {
+                let scratch = lu::solve::solve_in_place_scratch::<usize, f32>(n, 1, Par::Seq);
+                Ok(Self { factors, forward, backward, rounded: vec![0.0; n], stack: MemBuffer::new(scratch) })
+            }
         }
     }
 
-    /// x ← A⁻¹ x to single precision; x is scaled to 1 before it is rounded, so that no size of it is out of range. `room` is room to
-    /// work in, kept between calls. Cost 2 n².
-    pub fn solve(&self, x: &mut [f64], room: &mut Vec<f32>) {
+    /// x ← A⁻¹ x to single precision; x is scaled to 1 before it is rounded, so that no size of it is out of range. Cost 2 n², and no
+    /// allocation.
+    pub fn solve(&mut self, x: &mut [f64]) {
         let n = self.forward.len();
         let scale = super::max_abs(x);
         if scale == 0.0 {
             return;
         }
-        room.clear();
-        room.extend(x.iter().map(|v| (v / scale) as f32));
-        let scratch = lu::solve::solve_in_place_scratch::<usize, f32>(n, 1, Par::Seq);
+        self.rounded.iter_mut().zip(&*x).for_each(|(rounded, v)| *rounded = (v / scale) as f32);
         lu::solve::solve_in_place_with_conj(
             self.factors.as_ref(),
             self.factors.as_ref(),
             PermRef::new_checked(&self.forward, &self.backward, n),
             Conj::No,
-            MatMut::from_column_major_slice_mut(room, n, 1),
+            MatMut::from_column_major_slice_mut(&mut self.rounded, n, 1),
             Par::Seq,
-            MemStack::new(&mut MemBuffer::new(scratch)),
+            MemStack::new(&mut self.stack),
         );
-        x.iter_mut().zip(room.iter()).for_each(|(x, v)| *x = f64::from(*v) * scale);
+        x.iter_mut().zip(&self.rounded).for_each(|(x, v)| *x = f64::from(*v) * scale);
     }
 }

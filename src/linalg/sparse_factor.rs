@@ -149,7 +149,7 @@ impl SparseCholeskyFactor {
             ..CholeskySymbolicParams::default()
         };
         let refused = |pivot: usize| FactorError::NotPositiveDefinite { pivot, size: n };
-        // The lower triangle by rows is the upper one by columns.
+        // The lower triangle by rows is the upper one by columns; faer counts pivots of this form from 1.
         let symbolic = factorize_symbolic_cholesky(view.symbolic(), Side::Upper, SymmetricOrdering::Amd, params)
             .map_err(|_| refused(0))?;
         let mut values = vec![0.0; symbolic.len_val()];
@@ -157,7 +157,7 @@ impl SparseCholeskyFactor {
         let stack = &mut MemBuffer::new(scratch);
         symbolic
             .factorize_numeric_llt(&mut values, view, Side::Upper, default(), Par::Seq, MemStack::new(stack), default())
-            .map_err(|LltError::NonPositivePivot { index }| refused(index))?;
+            .map_err(|LltError::NonPositivePivot { index }| refused(index.saturating_sub(1)))?;
         Ok(Self { symbolic, values })
     }
 

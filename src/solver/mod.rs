@@ -18,7 +18,7 @@ mod stationary;
 pub use accelerated::{CoarseSpace, DeflatedCg, DeflatedGmres, Perron, TwoGrid};
 pub use bracket::Bracket;
 pub use budget::{BUDGET, Budget};
-pub use direct::{Cholesky, Factored, Gth, Lu, LuNalgebra, SingleLu, SparseCholesky, SparseLu};
+pub use direct::{Cholesky, Factored, Gth, LowRank, Lu, LuNalgebra, SingleLu, SparseCholesky, SparseLu};
 pub use error::{RowGain, SolveError};
 pub use krylov::{
     Anderson, BiCg, BiCgStab, Cg, FlexibleGmres, Gmres, MinimalResidual, Minres, OwnGain, Preconditioner, Prepared,
@@ -94,6 +94,7 @@ pub fn all(tolerance: f64) -> Vec<Box<dyn Solver>> {
         Box::new(SparseLu),
         Box::new(SparseCholesky),
         Box::new(SingleLu { tolerance }),
+        Box::new(LowRank { tolerance, rank_tolerance: 0.25, seed: 0 }),
         Box::new(LuNalgebra),
         Box::new(Neumann { tolerance }),
         Box::new(Jacobi { tolerance }),

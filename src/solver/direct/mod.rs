@@ -3,6 +3,7 @@
 mod cholesky;
 mod factored;
 mod gth;
+mod low_rank;
 mod lu;
 mod single;
 mod sparse;
@@ -10,6 +11,7 @@ mod sparse;
 pub use cholesky::Cholesky;
 pub use factored::Factored;
 pub use gth::Gth;
+pub use low_rank::LowRank;
 pub use lu::{Lu, LuNalgebra};
 pub use single::SingleLu;
 pub use sparse::{SparseCholesky, SparseLu};

@@ -30,7 +30,7 @@ impl Solver for SingleLu {
         let method = self.name();
         let mut monitor = Monitor::new(method, equation, self.tolerance, observer);
         let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
-        let factors = (0..n_bands)
+        let mut factors = (0..n_bands)
             .map(|band| {
                 SingleLuFactor::new(&one_minus_transport(equation, band)).map_err(|source| SolveError::Factor {
                     method,
@@ -41,7 +41,6 @@ impl Solver for SingleLu {
             .collect::<Result<Vec<_>, _>>()?;
 
         // Refine from L = E.
-        let mut room = Vec::with_capacity(n);
         let mut radiance = equation.emission.clone();
         let mut residual = Block::zeros(n, n_bands);
         let stop = loop {
@@ -50,9 +49,9 @@ impl Solver for SingleLu {
             if let Some(stop) = monitor.check(relative_residual(equation.emission, &residual), &radiance)? {
                 break stop;
             }
-            for (band, factors) in factors.iter().enumerate() {
+            for (band, factors) in factors.iter_mut().enumerate() {
                 if band_residual(equation.emission, &residual, band) > self.tolerance {
-                    factors.solve(residual.column_mut(band), &mut room);
+                    factors.solve(residual.column_mut(band));
                     let correction = residual.column(band);
                     radiance.column_mut(band).iter_mut().zip(correction).for_each(|(l, c)| *l += c);
                 }

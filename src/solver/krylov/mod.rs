@@ -13,6 +13,7 @@ pub use anderson::Anderson;
 pub use bicg::BiCg;
 pub use bicgstab::BiCgStab;
 pub use cg::Cg;
+pub(super) use gmres::minimise;
 pub use gmres::{FlexibleGmres, Gmres};
 pub use minres::Minres;
 pub use preconditioner::{MinimalResidual, OwnGain, Preconditioner, Prepared};
