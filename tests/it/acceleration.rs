@@ -1,9 +1,9 @@
 //! Methods with a coarse space: as fast for nearly white scenes as for grey ones.
 
 use super::scenes::{self, Case};
-use etendue::assembly::Transport;
+use etendue::assembly::System;
 use etendue::compare::relative_max;
-use etendue::linalg::{Block, Diagonal, Equation, Hierarchy, LinearOperator, SelfAdjoint, Unknown};
+use etendue::linalg::{Block, Equation, Hierarchy, LinearOperator, SelfAdjoint};
 use etendue::solver::{
     Cg, DeflatedCg, DeflatedGmres, Gmres, Gth, Iteration, Perron, Solution, SolveError, Solver, Stop, TwoGrid,
 };
@@ -12,48 +12,14 @@ use std::ops::ControlFlow;
 /// Asked of the residual, and of the error against elimination without subtraction.
 const TOLERANCE: f64 = 1e-12;
 
-/// A case with other albedos: every one that is not zero set to this, or none changed.
-struct Painted<'a> {
-    case: &'a Case,
-    transport: Transport,
-    root: Diagonal,
-    absorption: Block,
-}
-
-impl<'a> Painted<'a> {
-    fn new(case: &'a Case, albedo: Option<f64>) -> Self {
-        let system = &case.system;
-        let own = system.transport().scattering().values();
-        let (n, n_bands) = (system.n_bundles(), system.n_bands());
-        let chosen = |i: usize, band: usize| match albedo {
-            Some(albedo) if own.get(i, band) > 0.0 => albedo,
-            _ => own.get(i, band),
-        };
-        let albedo = Block::from_fn(n, n_bands, chosen);
-        let absorption = Block::from_fn(n, n_bands, |i, band| {
-            let a = albedo.get(i, band);
-            (1.0 - a) + a * system.sinks().row(i).sum::<f64>() / system.etendue()[i]
-        });
-        let root = Diagonal::new(Block::from_fn(n, n_bands, |i, band| albedo.get(i, band).sqrt()));
-        let transport = Transport::new(Diagonal::new(albedo), system.transport().propagation().clone());
-        Self { case, transport, root, absorption }
-    }
-
-    fn equation(&self) -> Equation<'_> {
-        let system = &self.case.system;
-        Equation {
-            transport: &self.transport,
-            emission: system.emission(),
-            absorption: Some(&self.absorption),
-            self_adjoint: Some(SelfAdjoint {
-                etendue: system.etendue(),
-                propagation: system.transport().propagation(),
-                scattering_root: &self.root,
-                unknown: Unknown::Radiance,
-            }),
-            hierarchy: Some(system.hierarchy()),
-        }
-    }
+/// The case with every albedo that is not zero set to this, or none changed.
+fn painted(case: &Case, albedo: Option<f64>) -> System {
+    let own = case.system.transport().scattering().values();
+    let chosen = |i: usize, band: usize| match albedo {
+        Some(albedo) if own.get(i, band) > 0.0 => albedo,
+        _ => own.get(i, band),
+    };
+    case.system.with_albedo(Block::from_fn(own.n_rows(), own.n_columns(), chosen))
 }
 
 fn solve(solver: &dyn Solver, equation: Equation<'_>) -> Solution {
@@ -73,9 +39,9 @@ fn the_albedo_does_not_matter() {
     ] {
         let case = Case::new(name, patch_size);
         for albedo in [None, Some(0.9), Some(0.999), Some(1.0 - 1e-6), Some(1.0 - 1e-12)] {
-            let painted = Painted::new(&case, albedo);
-            let reference = solve(&Gth, painted.equation());
-            let answer = solve(&DeflatedCg { tolerance: TOLERANCE, n_groups: None }, painted.equation());
+            let system = painted(&case, albedo);
+            let reference = solve(&Gth, system.equation());
+            let answer = solve(&DeflatedCg { tolerance: TOLERANCE, n_groups: None }, system.equation());
             let report = &answer.report;
             let label = format!("{name} at {albedo:?}: {} products", report.products);
             assert_eq!(report.stop, Stop::Converged, "{label}");
@@ -93,11 +59,11 @@ fn the_albedo_does_not_matter() {
 #[test]
 fn plain_conjugate_gradients_lose_what_deflation_keeps() {
     let case = Case::new("two-rooms", 0.5);
-    let painted = Painted::new(&case, Some(1.0 - 1e-12));
-    let reference = solve(&Gth, painted.equation());
-    let plain = solve(&Cg { tolerance: TOLERANCE }, painted.equation());
+    let system = painted(&case, Some(1.0 - 1e-12));
+    let reference = solve(&Gth, system.equation());
+    let plain = solve(&Cg { tolerance: TOLERANCE }, system.equation());
     assert!(relative_max(&plain.radiance, &reference.radiance) > 1e-6 && plain.report.products > 40.0);
-    let two_grid = solve(&TwoGrid { tolerance: TOLERANCE, n_groups: None }, painted.equation());
+    let two_grid = solve(&TwoGrid { tolerance: TOLERANCE, n_groups: None }, system.equation());
     assert!(relative_max(&two_grid.radiance, &reference.radiance) <= TOLERANCE);
     assert!(two_grid.report.products < plain.report.products);
 }
