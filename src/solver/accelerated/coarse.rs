@@ -79,7 +79,7 @@ impl Coarse {
         let mut bands = Vec::with_capacity(equation.n_bands());
         for band in 0..equation.n_bands() {
             let weight = weights.column(band);
-            let is_left_out = weight.iter().any(|w| *w == 0.0);
+            let is_left_out = weight.contains(&0.0);
             let mut spread = Dense::zeros(n, m);
             let mut loss = vec![0.0; n];
             let mut products = vec![0.0; n * sources.len()];
