@@ -1,7 +1,7 @@
 //! The spectrum of K: against what is known, against dense eigenvalues, and against what solvers then do.
 
 use super::scenes;
-use etendue::linalg::{Block, Dense, Equation, LinearOperator, eigenpairs};
+use etendue::linalg::{Block, Dense, Equation, eigenpairs};
 use etendue::solver::spectrum::{
     Eigen, TruncationBound, all_singular_values, condition, effective_rank, leading_eigenpairs,
     leading_singular_values, prediction, spectral_radius,
