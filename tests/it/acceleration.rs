@@ -182,3 +182,19 @@ fn minimal_residuals_need_fewer_iterations_on_a_coarse_space() {
     assert_eq!(deflated.report.method, "deflated-gmres");
     assert!(deflated.report.n_iterations < plain.report.n_iterations);
 }
+
+#[test]
+fn two_grid_converges_by_its_factor() {
+    let case = Case::new("corner-box", 0.2);
+    let solver = TwoGrid { tolerance: 1e-13, n_groups: None };
+    for albedo in [Some(0.9), Some(1.0 - 1e-9)] {
+        let system = painted(&case, albedo);
+        let factors = solver.factor(system.equation(), 60).unwrap();
+        let factor = factors.iter().copied().fold(0.0, f64::max);
+        let history = solve(&solver, system.equation()).report.history;
+        // The last six iterations, which the slowest modes have to themselves.
+        let (first, last) = (history[history.len() - 7], history[history.len() - 1]);
+        let met = (last / first).powf(1.0 / 6.0);
+        assert!(factor < 0.6 && (met / factor - 1.0).abs() < 0.15, "{met} {factor}");
+    }
+}

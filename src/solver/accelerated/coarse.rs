@@ -76,28 +76,28 @@ impl Coarse {
         images: &mut [Block],
     ) -> Result<Self, SolveError> {
         let (n, m) = (equation.n_unknowns(), aggregation.n_groups());
+        // Zipped chunks need something to chunk, also where no image is asked for.
+        let stride = sources.len().max(1);
         let mut bands = Vec::with_capacity(equation.n_bands());
         for band in 0..equation.n_bands() {
             let weight = weights.column(band);
             let is_left_out = weight.contains(&0.0);
             let mut spread = Dense::zeros(n, m);
             let mut loss = vec![0.0; n];
-            let mut products = vec![0.0; n * sources.len()];
+            let mut products = vec![0.0; n * stride];
             let mut near: Vec<Vec<(u32, f64)>> = vec![Vec::new(); n];
             let root: Vec<f64> = weight.iter().map(|w| w.sqrt()).collect();
             let threshold = near::STRONG / n as f64;
             let tasks =
                 spread.values_mut().par_chunks_mut(ROWS_A_TASK * m.max(1)).zip(loss.par_chunks_mut(ROWS_A_TASK));
-            let tasks = tasks
-                .zip(products.par_chunks_mut(ROWS_A_TASK * sources.len().max(1)))
-                .zip(near.par_chunks_mut(ROWS_A_TASK));
+            let tasks = tasks.zip(products.par_chunks_mut(ROWS_A_TASK * stride)).zip(near.par_chunks_mut(ROWS_A_TASK));
             tasks.enumerate().for_each_init(
                 || vec![0.0; n],
                 |row, (task, (((spread, loss), products), near))| {
                     for (k, ((gathered, loss), near)) in spread.chunks_mut(m.max(1)).zip(loss).zip(near).enumerate() {
                         let i = task * ROWS_A_TASK + k;
                         equation.transport.row(band, i, row);
-                        let dots = products[k * sources.len()..][..sources.len()].iter_mut().zip(sources);
+                        let dots = products[k * stride..][..sources.len()].iter_mut().zip(sources);
                         dots.for_each(|(dot, x)| *dot = row.iter().zip(x.column(band)).map(|(k, x)| k * x).sum());
                         // Keep what is strong.
                         let strong = row
@@ -127,7 +127,7 @@ impl Coarse {
             );
             for (s, image) in images.iter_mut().enumerate() {
                 let column = image.column_mut(band).iter_mut().enumerate();
-                column.for_each(|(i, out)| *out = products[i * sources.len() + s]);
+                column.for_each(|(i, out)| *out = products[i * stride + s]);
             }
 
             // Gather the rows.

@@ -17,7 +17,7 @@ use super::super::report::{conclude, relative_residual};
 use super::super::{Observer, Solution, SolveError, Solver};
 use super::coarse::{self, Coarse};
 use super::shifted::Shifted;
-use crate::linalg::{Aggregation, Block, Equation};
+use crate::linalg::{Aggregation, Block, Equation, max_abs};
 
 /// Bounces and coarse corrections until the residual is below the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +33,42 @@ pub struct TwoGrid {
 pub struct Perron {
     /// On ‖E + K L − L‖∞ / ‖E‖∞.
     pub tolerance: f64,
+}
+
+impl TwoGrid {
+    /// What an iteration takes off the residual in the long run, of every band: the spectral radius of Π K by that many products, as the
+    /// mean over their second half.
+    ///
+    /// # Errors
+    /// As of solving.
+    pub fn factor(&self, equation: Equation<'_>, n_products: usize) -> Result<Vec<f64>, SolveError> {
+        let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
+        let (aggregation, weights) = (level(equation, self.n_groups), weights_or_ones(equation));
+        let coarse = Coarse::new(self.name(), equation, aggregation, weights, &[], &mut [])?;
+        let mut residual = Block::from_fn(n, n_bands, |i, _| (1.618_033_988_749_895 * (i as f64 + 1.0)).sin());
+        let mut next = Block::zeros(n, n_bands);
+        let mut gathered = vec![0.0; coarse.n_groups()];
+        let mut logarithms = vec![0.0; n_bands];
+        for k in 0..n_products {
+            equation.transport.apply(&residual, &mut next);
+            std::mem::swap(&mut residual, &mut next);
+            for (band, logarithm) in logarithms.iter_mut().enumerate() {
+                coarse.gather(band, residual.column(band), &mut gathered);
+                let constant = coarse.solve(band, &mut gathered);
+                coarse.correct(band, constant, &gathered, residual.column_mut(band));
+                // What is left becomes 1 again.
+                let left = max_abs(residual.column(band));
+                if left > 0.0 {
+                    residual.column_mut(band).iter_mut().for_each(|r| *r /= left);
+                }
+                if k >= n_products / 2 {
+                    *logarithm += left.ln();
+                }
+            }
+        }
+        let n_counted = (n_products - n_products / 2) as f64;
+        Ok(logarithms.into_iter().map(|sum| (sum / n_counted).exp()).collect())
+    }
 }
 
 impl Solver for TwoGrid {
