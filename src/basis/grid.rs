@@ -96,7 +96,7 @@ impl Grid {
                 (0..*m).flat_map(|j| (0..*n).map(move |i| (j >> k) * across + (i >> k))).collect()
             }
             Self::Triangle { corners: [a, b, c], n } => {
-                if k >= n.trailing_zeros() + 1 {
+                if k > n.trailing_zeros() {
                     return vec![0; n * n];
                 }
                 let coarse = Self::Triangle { corners: [*a, *b, *c], n: n >> k };

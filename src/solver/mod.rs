@@ -15,7 +15,7 @@ mod self_adjoint;
 pub mod spectrum;
 mod stationary;
 
-pub use accelerated::{DeflatedCg, Perron, TwoGrid};
+pub use accelerated::{CoarseSpace, DeflatedCg, DeflatedGmres, Perron, TwoGrid};
 pub use bracket::Bracket;
 pub use budget::{BUDGET, Budget};
 pub use direct::{Cholesky, Factored, Gth, LowRank, Lu, LuNalgebra, SingleLu, SparseCholesky, SparseLu};
@@ -116,7 +116,17 @@ pub fn all(tolerance: f64) -> Vec<Box<dyn Solver>> {
     ]
 }
 
+/// The methods that rest on a coarse space at one tolerance: on the equation's hierarchy, or on the constants alone where it has none.
+pub fn on_coarse_spaces(tolerance: f64) -> Vec<Box<dyn Solver>> {
+    vec![
+        Box::new(DeflatedCg { tolerance, n_groups: None }),
+        Box::new(DeflatedGmres { tolerance, n_groups: None }),
+        Box::new(TwoGrid { tolerance, n_groups: None }),
+        Box::new(Perron { tolerance }),
+    ]
+}
+
 /// The method of this name, as reports and the command line give it.
 pub fn named(name: &str, tolerance: f64) -> Option<Box<dyn Solver>> {
-    all(tolerance).into_iter().find(|method| method.name() == name)
+    all(tolerance).into_iter().chain(on_coarse_spaces(tolerance)).find(|method| method.name() == name)
 }

@@ -56,13 +56,13 @@ struct Band {
 }
 
 /// A coarse space of every band.
-pub(super) struct Coarse<'a> {
-    aggregation: &'a Aggregation,
+pub(super) struct Coarse {
+    aggregation: Aggregation,
     weights: Block,
     bands: Vec<Band>,
 }
 
-impl<'a> Coarse<'a> {
+impl Coarse {
     /// Reads every row of every band of K once. `images` ← K `sources`, on the way: the bands of several blocks at no further reading.
     ///
     /// # Errors
@@ -70,34 +70,34 @@ impl<'a> Coarse<'a> {
     pub fn new(
         method: &'static str,
         equation: Equation<'_>,
-        aggregation: &'a Aggregation,
+        aggregation: Aggregation,
         weights: Block,
         sources: &[&Block],
         images: &mut [Block],
     ) -> Result<Self, SolveError> {
         let (n, m) = (equation.n_unknowns(), aggregation.n_groups());
+        // Zipped chunks need something to chunk, also where no image is asked for.
+        let stride = sources.len().max(1);
         let mut bands = Vec::with_capacity(equation.n_bands());
         for band in 0..equation.n_bands() {
             let weight = weights.column(band);
-            let is_left_out = weight.iter().any(|w| *w == 0.0);
+            let is_left_out = weight.contains(&0.0);
             let mut spread = Dense::zeros(n, m);
             let mut loss = vec![0.0; n];
-            let mut products = vec![0.0; n * sources.len()];
+            let mut products = vec![0.0; n * stride];
             let mut near: Vec<Vec<(u32, f64)>> = vec![Vec::new(); n];
             let root: Vec<f64> = weight.iter().map(|w| w.sqrt()).collect();
             let threshold = near::STRONG / n as f64;
             let tasks =
                 spread.values_mut().par_chunks_mut(ROWS_A_TASK * m.max(1)).zip(loss.par_chunks_mut(ROWS_A_TASK));
-            let tasks = tasks
-                .zip(products.par_chunks_mut(ROWS_A_TASK * sources.len().max(1)))
-                .zip(near.par_chunks_mut(ROWS_A_TASK));
+            let tasks = tasks.zip(products.par_chunks_mut(ROWS_A_TASK * stride)).zip(near.par_chunks_mut(ROWS_A_TASK));
             tasks.enumerate().for_each_init(
                 || vec![0.0; n],
                 |row, (task, (((spread, loss), products), near))| {
                     for (k, ((gathered, loss), near)) in spread.chunks_mut(m.max(1)).zip(loss).zip(near).enumerate() {
                         let i = task * ROWS_A_TASK + k;
                         equation.transport.row(band, i, row);
-                        let dots = products[k * sources.len()..][..sources.len()].iter_mut().zip(sources);
+                        let dots = products[k * stride..][..sources.len()].iter_mut().zip(sources);
                         dots.for_each(|(dot, x)| *dot = row.iter().zip(x.column(band)).map(|(k, x)| k * x).sum());
                         // Keep what is strong.
                         let strong = row
@@ -127,7 +127,7 @@ impl<'a> Coarse<'a> {
             );
             for (s, image) in images.iter_mut().enumerate() {
                 let column = image.column_mut(band).iter_mut().enumerate();
-                column.for_each(|(i, out)| *out = products[i * sources.len() + s]);
+                column.for_each(|(i, out)| *out = products[i * stride + s]);
             }
 
             // Gather the rows.
@@ -199,6 +199,16 @@ impl<'a> Coarse<'a> {
     /// q ← d of C (β 1 + d) = q, and β.
     pub fn solve(&self, band: usize, q: &mut [f64]) -> f64 {
         self.bands[band].factor.solve(q)
+    }
+
+    /// out ← K P (β 1 + d) of one band. One pass over B.
+    pub fn bounce(&self, band: usize, constant: f64, d: &[f64], out: &mut [f64]) {
+        let Band { spread, loss, .. } = &self.bands[band];
+        for (i, ((w, loss), out)) in self.weight(band).iter().zip(loss).zip(out).enumerate() {
+            let gathered: f64 = spread.row_slice(i).iter().zip(d).map(|(b, d)| b * d).sum();
+            let whole = if *w > 0.0 { 1.0 - loss } else { -loss };
+            *out = gathered + constant * whole;
+        }
     }
 
     /// x ← x + P d of one band.

@@ -57,7 +57,7 @@ impl Solver for DeflatedCg {
         let probes = [probe(1.618_033_988_749_895), probe(2.414_213_562_373_095)];
         let mut images: [Block; 3] = std::array::from_fn(|_| Block::zeros(n, n_bands));
         let sources = [equation.emission, &probes[0], &probes[1]];
-        let coarse = Coarse::new(method, equation, &aggregation, weights.clone(), &sources, &mut images)?;
+        let coarse = Coarse::new(method, equation, aggregation, weights.clone(), &sources, &mut images)?;
         monitor.work.products += coarse.setup_work();
         let [mut r, kx, ky] = images;
         check_symmetry(method, &coarse, &probes, [&kx, &ky])?;
@@ -136,7 +136,7 @@ impl Solver for DeflatedCg {
 }
 
 /// ⟨a, b⟩ = Σ wᵢ aᵢ bᵢ.
-fn inner(coarse: &Coarse<'_>, band: usize, a: &[f64], b: &[f64]) -> f64 {
+fn inner(coarse: &Coarse, band: usize, a: &[f64], b: &[f64]) -> f64 {
     coarse.weight(band).iter().zip(a).zip(b).map(|((w, a), b)| w * a * b).sum()
 }
 
@@ -156,7 +156,7 @@ fn add_scaled(x: &mut [f64], factor: f64, y: &[f64]) {
 /// ⟨x, K y⟩ = ⟨K x, y⟩ of every band, where x and y are zero on what is left out.
 fn check_symmetry(
     method: &'static str,
-    coarse: &Coarse<'_>,
+    coarse: &Coarse,
     [x, y]: &[Block; 2],
     [kx, ky]: [&Block; 2],
 ) -> Result<(), SolveError> {

@@ -2,10 +2,12 @@
 
 mod coarse;
 mod deflated_cg;
+mod deflated_gmres;
 mod near;
 mod shifted;
 mod two_grid;
 
 pub(super) use coarse::weights as self_adjoint_weights;
 pub use deflated_cg::DeflatedCg;
+pub use deflated_gmres::{CoarseSpace, DeflatedGmres};
 pub use two_grid::{Perron, TwoGrid};

@@ -19,7 +19,7 @@ impl Shifted {
     }
 
     /// out ← α P 1 + v.
-    pub fn write(&self, coarse: &Coarse<'_>, out: &mut Block) {
+    pub fn write(&self, coarse: &Coarse, out: &mut Block) {
         out.copy_from(&self.rest);
         for (band, constant) in self.constants.iter().enumerate() {
             coarse.prolong_constant(band, *constant, out.column_mut(band));

@@ -1,11 +1,12 @@
 //! The two-grid method: a bounce on the fine grid, and what it leaves of the coarse space removed.
 //!
 //! ```text
-//! δ = r + P C⁻¹ Pᵀ W K r,      L ← L + δ,      r ← K r − (I − K) P C⁻¹ Pᵀ W K r = Π K r
+//! z = r + N r + N² r + N³ r,      L ← L + z + P C⁻¹ Pᵀ W (r − (I − K) z),      r ← Π (r − (I − K) z)
 //! ```
 //!
-//! which is Atkinson's and Brakhage's iteration with a Galerkin coarse equation C = Pᵀ W (I − K) P, solved directly. What converges is
-//! the Neumann series of K with the coarse space projected out: its factor is the spectral radius of Π K, which for smooth kernels falls
+//! which is Atkinson's and Brakhage's iteration with a Galerkin coarse equation C = Pᵀ W (I − K) P, solved directly, and with
+//! N, the strong entries of K, smoothed first. With z = r what converges is the Neumann series of K with the coarse space projected
+//! out: its factor is the spectral radius of Π K, which for smooth kernels falls
 //! with the size of the groups and knows nothing of the albedo. With one group only the leading mode is taken out: Perron deflation.
 //!
 //! Needs a coarse equation that is not singular, as that of K ≥ 0 with some absorption; takes any K. Every entry of K is read once to set
@@ -17,7 +18,7 @@ use super::super::report::{conclude, relative_residual};
 use super::super::{Observer, Solution, SolveError, Solver};
 use super::coarse::{self, Coarse};
 use super::shifted::Shifted;
-use crate::linalg::{Aggregation, Block, Equation};
+use crate::linalg::{Aggregation, Block, Equation, max_abs};
 
 /// Bounces and coarse corrections until the residual is below the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +36,41 @@ pub struct Perron {
     pub tolerance: f64,
 }
 
+impl TwoGrid {
+    /// What an iteration takes off the residual in the long run, of every band: the spectral radius of Π K by that many products, as the
+    /// mean over their second half.
+    ///
+    /// # Errors
+    /// As of solving.
+    pub fn factor(&self, equation: Equation<'_>, n_products: usize) -> Result<Vec<f64>, SolveError> {
+        let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
+        let (aggregation, weights) = (level(equation, self.n_groups), weights_or_ones(equation));
+        let coarse = Coarse::new(self.name(), equation, aggregation, weights, &[], &mut [])?;
+        let mut residual = Block::from_fn(n, n_bands, |i, _| (1.618_033_988_749_895 * (i as f64 + 1.0)).sin());
+        let (mut step, mut next) = (Block::zeros(n, n_bands), Block::zeros(n, n_bands));
+        let mut gathered = vec![0.0; coarse.n_groups()];
+        let mut logarithms = vec![0.0; n_bands];
+        for k in 0..n_products {
+            smooth(equation, &coarse, Smoother::Near, &mut residual, &mut step, &mut next);
+            for (band, logarithm) in logarithms.iter_mut().enumerate() {
+                coarse.gather(band, residual.column(band), &mut gathered);
+                let constant = coarse.solve(band, &mut gathered);
+                coarse.correct(band, constant, &gathered, residual.column_mut(band));
+                // What is left becomes 1 again.
+                let left = max_abs(residual.column(band));
+                if left > 0.0 {
+                    residual.column_mut(band).iter_mut().for_each(|r| *r /= left);
+                }
+                if k >= n_products / 2 {
+                    *logarithm += left.ln();
+                }
+            }
+        }
+        let n_counted = (n_products - n_products / 2) as f64;
+        Ok(logarithms.into_iter().map(|sum| (sum / n_counted).exp()).collect())
+    }
+}
+
 impl Solver for TwoGrid {
     fn name(&self) -> &'static str {
         "two-grid"
@@ -45,7 +81,8 @@ impl Solver for TwoGrid {
             Monitor::new(self.name(), equation, self.tolerance, observer),
             self.name(),
             equation,
-            &level(equation, self.n_groups),
+            level(equation, self.n_groups),
+            Smoother::Near,
         )
     }
 }
@@ -60,7 +97,8 @@ impl Solver for Perron {
             Monitor::new(self.name(), equation, self.tolerance, observer),
             self.name(),
             equation,
-            &level(equation, Some(1)),
+            level(equation, Some(1)),
+            Smoother::Bounce,
         )
     }
 }
@@ -80,11 +118,42 @@ pub(super) fn weights_or_ones(equation: Equation<'_>) -> Block {
     weights.unwrap_or_else(|| Block::from_fn(equation.n_unknowns(), n_bands, |_, _| 1.0))
 }
 
+/// What a residual is turned into before it bounces.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Smoother {
+    /// Itself.
+    Bounce,
+    /// r + N r + N² r + N³ r.
+    Near,
+}
+
+/// step ← the smoothed residual r, r ← r − (I − K) step, and the work beside that one product.
+fn smooth(
+    equation: Equation<'_>,
+    coarse: &Coarse,
+    smoother: Smoother,
+    residual: &mut Block,
+    step: &mut Block,
+    next: &mut Block,
+) -> f64 {
+    step.copy_from(residual);
+    if smoother == Smoother::Near {
+        for band in 0..residual.n_columns() {
+            coarse.near(band).apply(residual.column(band), next.column_mut(band), step.column_mut(band));
+        }
+    }
+    equation.transport.apply(step, next);
+    residual.add_scaled(-1.0, step);
+    residual.add_scaled(1.0, next);
+    if smoother == Smoother::Near { coarse.near_work() } else { 0.0 }
+}
+
 fn iterate(
     mut monitor: Monitor<'_>,
     method: &'static str,
     equation: Equation<'_>,
-    aggregation: &Aggregation,
+    aggregation: Aggregation,
+    smoother: Smoother,
 ) -> Result<Solution, SolveError> {
     // Read K once: the coarse equation, and the first bounce.
     let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
@@ -96,6 +165,7 @@ fn iterate(
 
     let mut field = Shifted::at(equation.emission);
     let (mut radiance, mut next) = (equation.emission.clone(), Block::zeros(n, n_bands));
+    let mut step = Block::zeros(n, n_bands);
     let mut gathered = vec![0.0; coarse.n_groups()];
     let stop = loop {
         // Take what is left of the coarse space out of the residual.
@@ -112,11 +182,10 @@ fn iterate(
             break stop;
         }
 
-        // Let the residual bounce once.
-        field.rest.add_scaled(1.0, &residual);
-        equation.transport.apply(&residual, &mut next);
+        // Step along what the strong entries make of the residual, and see what is left after its bounce.
+        monitor.work.products += smooth(equation, &coarse, smoother, &mut residual, &mut step, &mut next);
         monitor.count_applies(1);
-        std::mem::swap(&mut residual, &mut next);
+        field.rest.add_scaled(1.0, &step);
     };
     conclude(method, equation, radiance, stop, monitor.work, monitor.history)
 }
