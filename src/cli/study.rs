@@ -112,7 +112,9 @@ fn describe(settings: &StudySettings) -> [(&'static str, String); 8] {
 
 /// What a person wants to know first.
 fn summary(outcome: &StudyOutcome, folder: &Path) -> String {
-    let mut text = format!("{:14} {:>9} {:>10} {:>10} {:>10}\n", "solver", "products", "seconds", "residual", "error");
+    let width = outcome.solvers.iter().map(|run| run.solver.len()).fold(14, usize::max);
+    let mut text =
+        format!("{:width$} {:>9} {:>10} {:>10} {:>10}\n", "solver", "products", "seconds", "residual", "error");
     for run in &outcome.solvers {
         let products = if run.kind == "direct" || run.refusal.is_some() {
             "–".to_string()
@@ -120,10 +122,10 @@ fn summary(outcome: &StudyOutcome, folder: &Path) -> String {
             format!("{:.1}", run.products)
         };
         text += &format!(
-            "{:14} {products:>9} {:>10.3} {:>10.1e} {:>10.1e}  {}\n",
+            "{:width$} {products:>9} {:>10.3} {:>10.1e} {:>10.1e}  {}\n",
             run.solver, run.seconds, run.true_residual, run.error, run.stop
         );
-        run.refusal.iter().for_each(|refusal| text += &format!("{:14}   {refusal}\n", ""));
+        run.refusal.iter().for_each(|refusal| text += &format!("{:width$}   {refusal}\n", ""));
     }
     text += &format!("\n{:26} {:>9} {:>10} {:>10} {:>10}\n", "estimator", "slope", "seconds", "worst |z|", "p");
     for run in &outcome.estimators {

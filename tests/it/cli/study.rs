@@ -43,7 +43,7 @@ fn assert_folder(desk: &Desk, folder: &str) -> Vec<String> {
 #[test]
 fn a_study_writes_its_folder_whole_and_replaces_its_own() {
     let desk = Desk::new(&[]);
-    let scene = ["study", CORNELL, "-D", "resolution=12", "--patch-size", "1"];
+    let scene = ["study", CORNELL, "-D", "resolution=12", "--patch-size", "1", "--solvers", "all"];
 
     // By default to out/SCENE, with a summary for people.
     let first = desk.run(&[&scene[..], &FEW].concat());
