@@ -56,7 +56,7 @@ Examples:
   Of what differs from band to band there is a file a band; in Radiance's format, one with a component a band.";
 
 /// A method of every kind.
-const STUDY_SOLVERS: &str = "lu,gth,cholesky,neumann,gauss-seidel,southwell,chebyshev,cg,gmres";
+const STUDY_SOLVERS: &str = "lu,gth,cholesky,neumann,gauss-seidel,southwell,chebyshev,cg,deflated-cg,gmres";
 
 const STUDY_EXAMPLES: &str = "\
 Examples:
@@ -175,7 +175,7 @@ pub struct Solve {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// Method: lu, cholesky and lu-nalgebra are direct, the others iterate
+    /// Method: direct ones first, then those that iterate
     #[arg(long, default_value = "cg", value_parser = clap::builder::PossibleValuesParser::new(solver_names()))]
     pub solver: String,
 
@@ -262,7 +262,7 @@ pub struct Check {
 }
 
 fn solver_names() -> Vec<&'static str> {
-    crate::solver::all(1.0).iter().map(|solver| solver.name()).collect()
+    crate::solver::everyone(1.0).iter().map(|solver| solver.name()).collect()
 }
 
 fn positive(text: &str) -> Result<f64, String> {

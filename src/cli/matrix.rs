@@ -36,8 +36,8 @@ pub fn run(
     if let Some(path) = &solve.output {
         output::check_file(path)?;
     }
-    // A direct method writes out the matrix and its factors.
-    let share = if method.is_direct() { 3 } else { 1 };
+    // Some methods write out the matrix and its factors.
+    let share = if method.writes_out() { 3 } else { 1 };
     let limit = solve.scene.memory.0 / share;
     let transport = read_matrix(matrix, limit)?;
     let emission_columns = read_matrix(emission, limit)?;

@@ -27,9 +27,9 @@ struct Record<'a> {
 }
 
 pub fn run(arguments: &Arguments, asked: &Sensitivity, command: Vec<String>) -> Result<(), Failure> {
-    let method = solver::all(asked.tolerance).into_iter().find(|method| method.name() == asked.solver);
+    let method = solver::named(&asked.solver, asked.tolerance);
     let method = method.ok_or_else(|| Failure::new(Exit::Usage, format!("no solver '{}'", asked.solver)))?;
-    let an_entry = if method.is_direct() { 16 } else { 0 };
+    let an_entry = if method.writes_out() { 16 } else { 0 };
     let square = |n: usize| (n as u64).saturating_mul(n as u64);
     let chosen =
         choose(&asked.scene, |_, n| System::memory_estimate(n).saturating_add(square(n).saturating_mul(an_entry)))?;

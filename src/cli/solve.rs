@@ -23,15 +23,15 @@ const DRIFT: f64 = 10.0;
 const NO_ANSWER: f64 = 1e-3;
 
 pub fn run(arguments: &Arguments, solve: &Solve, command: Vec<String>) -> Result<(), Failure> {
-    let method = solver::all(solve.tolerance).into_iter().find(|method| method.name() == solve.solver);
+    let method = solver::named(&solve.solver, solve.tolerance);
     let method = method.ok_or_else(|| Failure::new(Exit::Usage, format!("no solver '{}'", solve.solver)))?;
 
     if let (Some(matrix), Some(emission)) = (&solve.matrix, &solve.emission) {
         return matrix::run(arguments, solve, &*method, matrix, emission);
     }
 
-    // Direct methods write out the matrix, its factors, and one of them a copy.
-    let an_entry = if method.is_direct() { 16 } else { 0 };
+    // Some methods write out the matrix, its factors, and one of them a copy.
+    let an_entry = if method.writes_out() { 16 } else { 0 };
     let square = |n: usize| (n as u64).saturating_mul(n as u64);
     let needed = |n: usize| System::memory_estimate(n).saturating_add(square(n).saturating_mul(an_entry));
     let chosen = choose(&solve.scene, |_, n| needed(n))?;

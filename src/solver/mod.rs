@@ -42,6 +42,11 @@ pub trait Solver {
         false
     }
 
+    /// True if it writes K out in full, and something of its size beside it.
+    fn writes_out(&self) -> bool {
+        self.is_direct()
+    }
+
     /// Answers the equation, every band; `observer` sees every iterate and may stop it.
     ///
     /// # Errors
@@ -126,7 +131,12 @@ pub fn on_coarse_spaces(tolerance: f64) -> Vec<Box<dyn Solver>> {
     ]
 }
 
+/// Every method there is: those of [`all`], and those [`on_coarse_spaces`].
+pub fn everyone(tolerance: f64) -> Vec<Box<dyn Solver>> {
+    all(tolerance).into_iter().chain(on_coarse_spaces(tolerance)).collect()
+}
+
 /// The method of this name, as reports and the command line give it.
 pub fn named(name: &str, tolerance: f64) -> Option<Box<dyn Solver>> {
-    all(tolerance).into_iter().chain(on_coarse_spaces(tolerance)).find(|method| method.name() == name)
+    everyone(tolerance).into_iter().find(|method| method.name() == name)
 }

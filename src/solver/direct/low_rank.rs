@@ -35,6 +35,10 @@ impl Solver for LowRank {
         "low-rank"
     }
 
+    fn writes_out(&self) -> bool {
+        true
+    }
+
     fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
         let monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
         minimise(self.name(), equation, self.tolerance, RESTART, Some(self), monitor)

@@ -26,6 +26,10 @@ impl Solver for SingleLu {
         "lu-f32"
     }
 
+    fn writes_out(&self) -> bool {
+        true
+    }
+
     fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
         let method = self.name();
         let mut monitor = Monitor::new(method, equation, self.tolerance, observer);
