@@ -18,7 +18,7 @@ mod stationary;
 pub use accelerated::{CoarseSpace, DeflatedCg, DeflatedGmres, Perron, TwoGrid};
 pub use bracket::Bracket;
 pub use budget::{BUDGET, Budget};
-pub use direct::{Cholesky, Factored, Gth, LowRank, Lu, LuNalgebra, SingleLu, SparseCholesky, SparseLu};
+pub use direct::{Cholesky, Factored, Gth, LowRank, Lu, LuNalgebra, RowChange, SingleLu, SparseCholesky, SparseLu};
 pub use error::{RowGain, SolveError};
 pub use krylov::{
     Anderson, BiCg, BiCgStab, Cg, FlexibleGmres, Gmres, MinimalResidual, Minres, OwnGain, Preconditioner, Prepared,

@@ -1,6 +1,7 @@
 //! The program as a person or a script meets it: arguments in; exit code, standard output and standard error out.
 
 mod input;
+mod matrices;
 mod solve;
 mod study;
 mod usage;

@@ -29,6 +29,7 @@ mod report;
 mod sampling;
 mod scattering;
 mod scenes;
+mod sensitivity;
 mod shadows;
 mod shafts;
 mod solvers;

@@ -53,6 +53,12 @@ impl Factored {
         })
     }
 
+    /// (I − K)⁻¹ of one band times these columns.
+    pub(super) fn solve_band(&self, band: usize, mut columns: Block) -> Block {
+        self.bands[band].solve(&mut columns);
+        columns
+    }
+
     /// Entries of the factors of the fullest band, if they are stored sparsely.
     pub fn n_fill(&self) -> Option<usize> {
         self.n_fill

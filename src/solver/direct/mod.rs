@@ -7,6 +7,7 @@ mod low_rank;
 mod lu;
 mod single;
 mod sparse;
+mod what_if;
 
 pub use cholesky::Cholesky;
 pub use factored::Factored;
@@ -15,3 +16,4 @@ pub use low_rank::LowRank;
 pub use lu::{Lu, LuNalgebra};
 pub use single::SingleLu;
 pub use sparse::{SparseCholesky, SparseLu};
+pub use what_if::RowChange;
