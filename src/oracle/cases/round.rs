@@ -21,7 +21,7 @@ pub const SECTORS: usize = 8;
 pub const ENOUGH: f64 = 3e-7;
 
 /// The same where every level is dear.
-pub const DEAR: f64 = 9e-7;
+const DEAR: f64 = 9e-7;
 
 /// Absolute error of a row of form factors.
 pub const ACCURACY: f64 = 1e-9;
@@ -91,7 +91,7 @@ pub fn n_rings(angle: f64, level: usize) -> usize {
 }
 
 /// The profile of a sphere about the origin between two polar angles, with rings that end at those breaks which lie between.
-fn broken_arc(radius: f64, [from, to]: [f64; 2], breaks: &[f64], level: usize) -> Vec<[f64; 2]> {
+pub fn broken_arc(radius: f64, [from, to]: [f64; 2], breaks: &[f64], level: usize) -> Vec<[f64; 2]> {
     let mut ends: Vec<f64> = breaks.iter().copied().filter(|angle| *angle > from && *angle < to).collect();
     ends.extend([from, to]);
     ends.sort_by(f64::total_cmp);
