@@ -91,7 +91,7 @@ pub fn n_rings(angle: f64, level: usize) -> usize {
 }
 
 /// The profile of a sphere about the origin between two polar angles, with rings that end at those breaks which lie between.
-pub fn broken_arc(radius: f64, [from, to]: [f64; 2], breaks: &[f64], level: usize) -> Vec<[f64; 2]> {
+fn broken_arc(radius: f64, [from, to]: [f64; 2], breaks: &[f64], level: usize) -> Vec<[f64; 2]> {
     let mut ends: Vec<f64> = breaks.iter().copied().filter(|angle| *angle > from && *angle < to).collect();
     ends.extend([from, to]);
     ends.sort_by(f64::total_cmp);

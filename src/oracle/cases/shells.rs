@@ -6,12 +6,12 @@ use super::error::CaseError;
 use super::limit::{EVEN, Limit, Refinement, refine};
 use super::model::{Body, Model, Shape, WHOLE};
 use super::reader::Case;
-use super::revolution::{Facing, arc, revolve, sectors};
-use super::round::{ACCURACY, ENOUGH, LEVELS, SECTORS, agreeing, broken_arc, lengths, n_rings, nested_balls};
+use super::revolution::{Facing, arc, joined, revolve, sectors};
+use super::round::{ACCURACY, ENOUGH, LEVELS, SECTORS, agreeing, lengths, n_rings, nested_balls};
 use super::symmetry::of_sectors;
 use super::value::Value;
 use crate::geometry::Polygon;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Bounces whose contributions are told.
 const N_BOUNCES: usize = 11;
@@ -22,13 +22,11 @@ const SECTORS_OF_BANDS: usize = 32;
 /// Form factors are asked for to as many digits more as radiosities lose; no more than three.
 const LEAST_ABSORBED: f64 = 1e-3;
 
-/// Polar angle of the cap that stands for a pole: Pₗ falls by l (l + 1) / 4 times its square there.
-const POLE: f64 = 1e-5;
+/// Polar angle of the cap that stands for a pole. Its view differs from the pole's by no more than a band of this width at the horizon.
+const POLE: f64 = 1e-9;
 
-/// What Pₗ and the view from a cap change over it.
-fn blur(l: usize) -> f64 {
-    (1 + l * (l + 1)) as f64 * POLE * POLE
-}
+/// No arc in view has more rings at level 1: spheres that all but touch are not resolved.
+const MOST_RINGS: f64 = 128.0;
 
 fn refinement(n_levels: usize) -> Refinement<'static> {
     Refinement { levels: &LEVELS[..n_levels], powers: EVEN, enough: ENOUGH }
@@ -195,26 +193,31 @@ fn degree(emission: &str) -> Result<usize, CaseError> {
 }
 
 /// A sphere about the origin in rings from pole to pole, the first of which is a flat cap so small that it stands for the pole, and the mean
-/// of Pₗ over each of them.
+/// of Pₗ over each of them. `arcs` are where rings end and what their width is at most up to there, at level 1.
 fn capped(
     radius: f64,
-    breaks: &[f64],
+    arcs: &[(f64, f64)],
     level: usize,
     facing: Facing,
     l: usize,
 ) -> Result<(Vec<Polygon>, Vec<f64>), CaseError> {
-    let mut profile = broken_arc(radius, [POLE, PI], breaks, level);
-    profile.insert(0, [0.0, profile[0][1]]);
+    let mut from = POLE;
+    let rings = joined(arcs.iter().map(|(to, width)| {
+        let n_rings = ((to - from) / width).ceil().max(1.0) as usize * level;
+        arc(radius, [std::mem::replace(&mut from, *to), *to], n_rings)
+    }));
+    let profile = joined([vec![[0.0, rings[0][1]], rings[0]], rings.clone()]);
     let polygons = revolve(&profile, &sectors(SECTORS * level), facing)?;
-    let rings = profile[1..].windows(2).map(|ends| mean_legendre(l, ends[0][1] / radius, ends[1][1] / radius));
-    Ok((polygons, std::iter::once(1.0).chain(rings).collect()))
+    let means = rings.windows(2).map(|ends| mean_legendre(l, ends[0][1] / radius, ends[1][1] / radius));
+    Ok((polygons, std::iter::once(1.0).chain(means).collect()))
 }
 
 /// `concentric_spheres` of which the outer one emits 1 + Pₗ(cos θ): four unknowns, coefficients of 1 and of Pₗ on both.
 ///
-/// Spheres about one point look alike from everywhere on each of them, so that what arrives has the harmonic that was sent, times a factor
-/// for every pair of spheres: what arrives at the pole, where Pₗ is 1, from rings that send Pₗ. Rings end where the pole's view does, at
-/// the horizon of its own plane or of the inner sphere: all of them then see it in full or not at all, and errors run in even powers.
+/// Spheres about one point look alike from everywhere on each of them. Operators that commute with all rotations take Pₗ to a multiple of
+/// itself (Schur's lemma), and the multiple is what arrives at the pole, where Pₗ is 1, from rings that send Pₗ. Rings end where the pole's
+/// view does, at the horizon of its own plane or of the inner sphere: all of them then see it in full or not at all, and errors run in
+/// even powers.
 pub fn zonal(case: &Case) -> Result<Answers, CaseError> {
     let [inner, outer] = lengths(&case.geometry, ["r_inner", "r_outer"])?;
     let albedo = [case.geometry.number("rho_inner")?, case.geometry.number("rho_outer")?];
@@ -222,12 +225,15 @@ pub fn zonal(case: &Case) -> Result<Answers, CaseError> {
     if case.geometry.number("E_inner")? != 0.0 {
         return Err(CaseError::Needs("an inner sphere that does not emit"));
     }
+    // Rings in view resolve what is between the spheres, and Pₗ; those out of view stand only in the way.
     let horizon = (inner / outer).acos();
+    let hidden = (PI, TAU / SECTORS as f64);
+    let width = hidden.1.min((outer - inner) / outer).min(1.0 / l as f64).max(horizon / MOST_RINGS);
     let limits = refine(refinement(8), |level| {
         // A body for every ring: those of the inner sphere first.
         let (balls, zonal): (Vec<_>, Vec<_>) = [
-            capped(inner, &[horizon], level, Facing::Left, l)?,
-            capped(outer, &[horizon, 2.0 * horizon], level, Facing::Right, l)?,
+            capped(inner, &[(horizon, width), hidden], level, Facing::Left, l)?,
+            capped(outer, &[(horizon, width), (2.0 * horizon, width), hidden], level, Facing::Right, l)?,
         ]
         .into_iter()
         .unzip();
@@ -235,8 +241,8 @@ pub fn zonal(case: &Case) -> Result<Answers, CaseError> {
         let bodies = rings.map(|ring| Body::black(ring.to_vec())).collect();
         let shape = Shape { bodies, symmetries: of_sectors(SECTORS * level), ..Shape::default() };
         let caps = [0, zonal[0].len()];
-        let absorbed = 1.0 - albedo[0].max(albedo[1]);
-        let accuracy = ACCURACY * absorbed.clamp(LEAST_ABSORBED, 1.0);
+        let least_absorbed = 1.0 - albedo[0].max(albedo[1]);
+        let accuracy = ACCURACY * least_absorbed.clamp(LEAST_ABSORBED, 1.0);
         let model = Model::folded(shape, WHOLE, |from, _| caps.contains(&from), accuracy)?;
 
         // Sum over rings what arrives at the poles, plain and of Pₗ.
@@ -263,8 +269,17 @@ pub fn zonal(case: &Case) -> Result<Answers, CaseError> {
             at(1, -1.0),
             at(0, 1.0),
         ];
-        let largest = values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
-        Ok((values, (model.noise() + blur(l)) * largest / absorbed))
+
+        // The band at the horizon sees one sphere for the other, which differ by this much.
+        let largest = |b: &[f64]| b[0].abs().max(b[1].abs());
+        let absorbed = |factors: &[Vec<f64>]| {
+            let sent_on = |k: usize| albedo[k] * factors[k].iter().map(|factor| factor.abs()).sum::<f64>();
+            (1.0 - sent_on(0).max(sent_on(1))).max(f64::EPSILON)
+        };
+        let noise = model.noise();
+        let of_mean = (noise * largest(&mean) + POLE * (mean[1] - mean[0]).abs()) / absorbed(&plain);
+        let of_amplitude = (noise + POLE) * largest(&amplitude).max(1.0) / absorbed(&with_zonal);
+        Ok((values, of_mean + of_amplitude))
     })?;
     let names = [
         "B2_l0",
@@ -290,5 +305,24 @@ mod tests {
         assert!((legendre(3, 0.3) - 0.5 * (5.0 * 0.027 - 0.9)).abs() < 1e-15);
         assert!((mean_legendre(3, 0.0, 1.0) + 0.125).abs() < 1e-15);
         assert!(degree("1+P_3(cos theta)").is_ok_and(|l| l == 3) && degree("1+P_0(cos theta)").is_err());
+    }
+
+    /// ∫ Pₗ over a sphere is zero, and so is the sum over its rings: a ring covers the share of the sphere that it spans in height.
+    #[test]
+    fn rings_from_pole_to_pole_cover_the_sphere() {
+        let (level, l) = (2, 3);
+        let arcs = [(1.0, 0.3), (PI, 0.7)];
+        let (polygons, means) = capped(2.0, &arcs, level, Facing::Right, l).expect("a sphere");
+        assert_eq!(polygons.len(), means.len() * SECTORS * level);
+        let height = |polygon: &Polygon| {
+            let (low, high) =
+                polygon.vertices().iter().fold((2.0f64, -2.0f64), |(low, high), v| (low.min(v.z), high.max(v.z)));
+            high - low
+        };
+        let rings = polygons.chunks(SECTORS * level).zip(&means);
+        let (covered, sum) =
+            rings.fold((0.0, 0.0), |(c, s), (ring, mean)| (c + height(&ring[0]), s + height(&ring[0]) * mean));
+        // Some ulp of heights of 2 a ring.
+        assert!((covered - 4.0).abs() < 1e-14 && sum.abs() < 1e-13, "{covered} {sum}");
     }
 }
