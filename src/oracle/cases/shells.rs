@@ -23,7 +23,7 @@ const SECTORS_OF_BANDS: usize = 32;
 const LEAST_ABSORBED: f64 = 1e-3;
 
 /// Polar angle of the cap that stands for a pole. Its view differs from the pole's by no more than a band of this width at the horizon.
-const POLE: f64 = 1e-9;
+const POLE: f64 = 1e-10;
 
 /// No arc in view has more rings at level 1: spheres that all but touch are not resolved.
 const MOST_RINGS: f64 = 128.0;
