@@ -21,7 +21,7 @@ pub const SECTORS: usize = 8;
 pub const ENOUGH: f64 = 3e-7;
 
 /// The same where every level is dear.
-pub const DEAR: f64 = 9e-7;
+const DEAR: f64 = 9e-7;
 
 /// Absolute error of a row of form factors.
 pub const ACCURACY: f64 = 1e-9;

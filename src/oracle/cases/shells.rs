@@ -6,12 +6,12 @@ use super::error::CaseError;
 use super::limit::{EVEN, Limit, Refinement, refine};
 use super::model::{Body, Model, Shape, WHOLE};
 use super::reader::Case;
-use super::revolution::{Facing, arc, revolve, sectors};
-use super::round::{ACCURACY, DEAR, ENOUGH, LEVELS, SECTORS, agreeing, lengths, n_rings, nested_balls};
+use super::revolution::{Facing, arc, joined, revolve, sectors};
+use super::round::{ACCURACY, ENOUGH, LEVELS, SECTORS, agreeing, lengths, n_rings, nested_balls};
 use super::symmetry::of_sectors;
 use super::value::Value;
 use crate::geometry::Polygon;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Bounces whose contributions are told.
 const N_BOUNCES: usize = 11;
@@ -22,10 +22,11 @@ const SECTORS_OF_BANDS: usize = 32;
 /// Form factors are asked for to as many digits more as radiosities lose; no more than three.
 const LEAST_ABSORBED: f64 = 1e-3;
 
-/// Rings of concentric spheres, and how many numbers of them are tried.
-const FEWEST_RINGS: usize = 5;
-const MOST_RINGS: usize = 24;
-const N_LEVELS: usize = 7;
+/// Polar angle of the cap that stands for a pole. Its view differs from the pole's by no more than a band of this width at the horizon.
+const POLE: f64 = 1e-10;
+
+/// No arc in view has more rings at level 1: spheres that all but touch are not resolved.
+const MOST_RINGS: f64 = 128.0;
 
 fn refinement(n_levels: usize) -> Refinement<'static> {
     Refinement { levels: &LEVELS[..n_levels], powers: EVEN, enough: ENOUGH }
@@ -191,26 +192,32 @@ fn degree(emission: &str) -> Result<usize, CaseError> {
     degree.ok_or(CaseError::Needs("an emission of the form 1+P_l(cos theta)"))
 }
 
-/// Numbers of rings on a sphere, rising, of which a whole number fits best between a point and the horizon that a smaller sphere in the
-/// middle makes for it, at this polar angle from it.
-///
-/// What a ring sees begins or ends there. Errors hold a term that depends on where in a ring that is, and run in even powers where it is
-/// always at the same place.
-fn rings_in_step(horizon: f64) -> Vec<usize> {
-    let misfit = |n: &usize| {
-        let rings = horizon / PI * *n as f64;
-        (rings - rings.round()).abs()
-    };
-    let mut numbers: Vec<usize> = (FEWEST_RINGS..=MOST_RINGS).collect();
-    numbers.sort_by(|a, b| misfit(a).total_cmp(&misfit(b)));
-    numbers.truncate(N_LEVELS);
-    numbers.sort_unstable();
-    numbers
+/// A sphere about the origin in rings from pole to pole, the first of which is a flat cap so small that it stands for the pole, and the mean
+/// of Pₗ over each of them. `arcs` are where rings end and what their width is at most up to there, at level 1.
+fn capped(
+    radius: f64,
+    arcs: &[(f64, f64)],
+    level: usize,
+    facing: Facing,
+    l: usize,
+) -> Result<(Vec<Polygon>, Vec<f64>), CaseError> {
+    let mut from = POLE;
+    let rings = joined(arcs.iter().map(|(to, width)| {
+        let n_rings = ((to - from) / width).ceil().max(1.0) as usize * level;
+        arc(radius, [std::mem::replace(&mut from, *to), *to], n_rings)
+    }));
+    let profile = joined([vec![[0.0, rings[0][1]], rings[0]], rings.clone()]);
+    let polygons = revolve(&profile, &sectors(SECTORS * level), facing)?;
+    let means = rings.windows(2).map(|ends| mean_legendre(l, ends[0][1] / radius, ends[1][1] / radius));
+    Ok((polygons, std::iter::once(1.0).chain(means).collect()))
 }
 
-/// `concentric_spheres` of which the outer one emits 1 + Pₗ(cos θ): an unknown for every ring of both.
+/// `concentric_spheres` of which the outer one emits 1 + Pₗ(cos θ): four unknowns, coefficients of 1 and of Pₗ on both.
 ///
-/// With Pₗ averaged over rings, coefficients of Pₗ are (2 l + 1) times means with Pₗ, and operators have their values on it.
+/// Spheres about one point look alike from everywhere on each of them. Operators that commute with all rotations take Pₗ to a multiple of
+/// itself (Schur's lemma), and the multiple is what arrives at the pole, where Pₗ is 1, from rings that send Pₗ. Rings end where the pole's
+/// view does, at the horizon of its own plane or of the inner sphere: all of them then see it in full or not at all, and errors run in
+/// even powers.
 pub fn zonal(case: &Case) -> Result<Answers, CaseError> {
     let [inner, outer] = lengths(&case.geometry, ["r_inner", "r_outer"])?;
     let albedo = [case.geometry.number("rho_inner")?, case.geometry.number("rho_outer")?];
@@ -218,57 +225,61 @@ pub fn zonal(case: &Case) -> Result<Answers, CaseError> {
     if case.geometry.number("E_inner")? != 0.0 {
         return Err(CaseError::Needs("an inner sphere that does not emit"));
     }
-    let levels = rings_in_step((inner / outer).acos());
-    let limits = refine(Refinement { levels: &levels, powers: EVEN, enough: DEAR }, |n_rings| {
-        let n_sectors = 2 * n_rings;
-        let zonal: Vec<f64> = (0..n_rings)
-            .map(|ring| {
-                let cosine = |k: usize| (PI * k as f64 / n_rings as f64).cos();
-                mean_legendre(l, cosine(ring), cosine(ring + 1))
-            })
-            .collect();
-
+    // Rings in view resolve what is between the spheres, and Pₗ; those out of view stand only in the way.
+    let horizon = (inner / outer).acos();
+    let hidden = (PI, TAU / SECTORS as f64);
+    let width = hidden.1.min((outer - inner) / outer).min(1.0 / l as f64).max(horizon / MOST_RINGS);
+    let limits = refine(refinement(8), |level| {
         // A body for every ring: those of the inner sphere first.
-        let spheres = nested_balls(inner, outer, n_sectors, n_rings)?;
-        let ring = |sphere: usize, polygons: &[Polygon], ring: usize| {
-            let exitance = if sphere == 0 { 0.0 } else { 1.0 + zonal[ring] };
-            Body { albedo: albedo[sphere], exitance, ..Body::black(polygons.to_vec()) }
-        };
-        let rings = |sphere: usize| {
-            let rings = spheres[sphere].chunks(n_sectors).enumerate();
-            rings.map(|(k, polygons)| ring(sphere, polygons, k)).collect::<Vec<_>>()
-        };
-        let bodies = rings(0).into_iter().chain(rings(1)).collect();
-        let shape = Shape { bodies, symmetries: of_sectors(n_sectors), ..Shape::default() };
-        let model = Model::folded(shape, WHOLE, |_, _| true, ACCURACY)?;
-        let radiance = model.radiance()?;
-        let (b, flows, areas) = (model.radiosity(&radiance), model.flows(), model.areas());
+        let (balls, zonal): (Vec<_>, Vec<_>) = [
+            capped(inner, &[(horizon, width), hidden], level, Facing::Left, l)?,
+            capped(outer, &[(horizon, width), (2.0 * horizon, width), hidden], level, Facing::Right, l)?,
+        ]
+        .into_iter()
+        .unzip();
+        let rings = balls.iter().flat_map(|ball| ball.chunks(SECTORS * level));
+        let bodies = rings.map(|ring| Body::black(ring.to_vec())).collect();
+        let shape = Shape { bodies, symmetries: of_sectors(SECTORS * level), ..Shape::default() };
+        let caps = [0, zonal[0].len()];
+        let least_absorbed = 1.0 - albedo[0].max(albedo[1]);
+        let accuracy = ACCURACY * least_absorbed.clamp(LEAST_ABSORBED, 1.0);
+        let model = Model::folded(shape, WHOLE, |from, _| caps.contains(&from), accuracy)?;
 
-        // Take means over a sphere of rings, plain and with Pₗ.
-        let rings = |sphere: usize| sphere * n_rings..(sphere + 1) * n_rings;
-        let area = |sphere: usize| areas[rings(sphere)].iter().sum::<f64>();
-        let mean = |sphere: usize| rings(sphere).map(|k| areas[k] * b[k]).sum::<f64>() / area(sphere);
-        let with_zonal = |sphere: usize| {
-            let sum: f64 = rings(sphere).map(|k| areas[k] * b[k] * zonal[k % n_rings]).sum();
-            (2 * l + 1) as f64 * sum / area(sphere)
+        // Sum over rings what arrives at the poles, plain and of Pₗ.
+        let factors = model.form_factors();
+        let arriving = |weight: &dyn Fn(f64) -> f64| -> Vec<Vec<f64>> {
+            let from = |to: usize, sphere: usize| {
+                let rings = factors[caps[to]][caps[sphere]..].iter().zip(&zonal[sphere]);
+                rings.map(|(factor, mean)| factor * weight(*mean)).sum()
+            };
+            (0..2).map(|to| (0..2).map(|sphere| from(to, sphere)).collect()).collect()
         };
-        let exchanged = |from: usize, to: usize| {
-            let pairs = rings(from).flat_map(|i| rings(to).map(move |j| (i, j)));
-            let sum: f64 = pairs.map(|(i, j)| zonal[i % n_rings] * flows[i][j] * zonal[j % n_rings]).sum();
-            (2 * l + 1) as f64 * sum / (PI * area(from))
-        };
+        let (plain, with_zonal) = (arriving(&|_| 1.0), arriving(&|mean| mean));
+        let (mean, _) = constant_on_surfaces(&plain, &albedo, &[0.0, 1.0])?;
+        let (amplitude, _) = constant_on_surfaces(&with_zonal, &albedo, &[0.0, 1.0])?;
+        let at = |sphere: usize, cosine: f64| mean[sphere] + amplitude[sphere] * legendre(l, cosine);
         let values = vec![
-            mean(1),
-            mean(0),
-            with_zonal(1),
-            with_zonal(0),
-            exchanged(1, 1),
-            exchanged(0, 1),
-            b[n_rings],
-            b[2 * n_rings - 1],
-            b[0],
+            mean[1],
+            mean[0],
+            amplitude[1],
+            amplitude[0],
+            with_zonal[1][1],
+            with_zonal[0][1],
+            at(1, 1.0),
+            at(1, -1.0),
+            at(0, 1.0),
         ];
-        Ok((values, model.radiosity_noise(&radiance)))
+
+        // The band at the horizon sees one sphere for the other, which differ by this much.
+        let largest = |b: &[f64]| b[0].abs().max(b[1].abs());
+        let absorbed = |factors: &[Vec<f64>]| {
+            let sent_on = |k: usize| albedo[k] * factors[k].iter().map(|factor| factor.abs()).sum::<f64>();
+            (1.0 - sent_on(0).max(sent_on(1))).max(f64::EPSILON)
+        };
+        let noise = model.noise();
+        let of_mean = (noise * largest(&mean) + POLE * (mean[1] - mean[0]).abs()) / absorbed(&plain);
+        let of_amplitude = (noise + POLE) * largest(&amplitude).max(1.0) / absorbed(&with_zonal);
+        Ok((values, of_mean + of_amplitude))
     })?;
     let names = [
         "B2_l0",
@@ -294,5 +305,24 @@ mod tests {
         assert!((legendre(3, 0.3) - 0.5 * (5.0 * 0.027 - 0.9)).abs() < 1e-15);
         assert!((mean_legendre(3, 0.0, 1.0) + 0.125).abs() < 1e-15);
         assert!(degree("1+P_3(cos theta)").is_ok_and(|l| l == 3) && degree("1+P_0(cos theta)").is_err());
+    }
+
+    /// ∫ Pₗ over a sphere is zero, and so is the sum over its rings: a ring covers the share of the sphere that it spans in height.
+    #[test]
+    fn rings_from_pole_to_pole_cover_the_sphere() {
+        let (level, l) = (2, 3);
+        let arcs = [(1.0, 0.3), (PI, 0.7)];
+        let (polygons, means) = capped(2.0, &arcs, level, Facing::Right, l).expect("a sphere");
+        assert_eq!(polygons.len(), means.len() * SECTORS * level);
+        let height = |polygon: &Polygon| {
+            let (low, high) =
+                polygon.vertices().iter().fold((2.0f64, -2.0f64), |(low, high), v| (low.min(v.z), high.max(v.z)));
+            high - low
+        };
+        let rings = polygons.chunks(SECTORS * level).zip(&means);
+        let (covered, sum) =
+            rings.fold((0.0, 0.0), |(c, s), (ring, mean)| (c + height(&ring[0]), s + height(&ring[0]) * mean));
+        // Some ulp of heights of 2 a ring.
+        assert!((covered - 4.0).abs() < 1e-14 && sum.abs() < 1e-13, "{covered} {sum}");
     }
 }
