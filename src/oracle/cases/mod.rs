@@ -5,6 +5,7 @@
 //! and to be compared with.
 
 mod answer;
+mod blocker;
 mod closed;
 mod continuous;
 mod cube;

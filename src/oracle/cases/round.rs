@@ -2,6 +2,7 @@
 //! polygons.
 
 use super::answer::{Answers, Demand};
+use super::blocker::Blocker;
 use super::error::CaseError;
 use super::limit::{CONSTANT, EVEN, HORIZON, Refinement, refine};
 use super::model::{Body, Model, Shape, WHOLE};
@@ -20,14 +21,11 @@ pub const SECTORS: usize = 8;
 /// Error at which refinement ends: well below what passes.
 pub const ENOUGH: f64 = 3e-7;
 
-/// The same where every level is dear.
+/// The same past something round, where every level is dear.
 const DEAR: f64 = 9e-7;
 
 /// Absolute error of a row of form factors.
 pub const ACCURACY: f64 = 1e-9;
-
-/// Parts of a sphere that stands in the way are not narrower than this: shadows of many rings are dear.
-const NARROW: f64 = 0.2;
 
 /// What a case asks for: its name, and the surfaces from and to which the form factor is.
 type Wanted = [(&'static str, usize, usize)];
@@ -64,9 +62,10 @@ fn resolving(radius: f64, gap: f64) -> Refinement<'static> {
     Refinement { levels: &LEVELS[first..(first + 8).max(14)], ..even(0) }
 }
 
-/// Past something round every level is dear: they rise slowly, and end as soon as they may.
-fn blocked() -> Refinement<'static> {
-    Refinement { levels: &[1, 2, 3, 4, 5, 6, 7, 8], powers: EVEN, enough: DEAR }
+/// Past something round: tangent planes of a sphere begin to cut what they see, edges of a disk do not. The coarsest level shows its
+/// corners more than its roundness.
+fn blocked(by_sphere: bool) -> Refinement<'static> {
+    Refinement { levels: &LEVELS[1..8], powers: if by_sphere { HORIZON } else { EVEN }, enough: DEAR }
 }
 
 /// Surfaces with the symmetry of the level's sectors.
@@ -98,17 +97,9 @@ fn broken_arc(radius: f64, [from, to]: [f64; 2], breaks: &[f64], level: usize) -
     joined(ends.windows(2).map(|pair| arc(radius, [pair[0], pair[1]], n_rings(pair[1] - pair[0], level))))
 }
 
-/// A closed sphere about a point of the z axis that stands in the way, with rings that end at those breaks which are well apart.
-fn blocking_ball(radius: f64, height: f64, breaks: &[f64], level: usize) -> Result<Body, CaseError> {
-    let mut ends: Vec<f64> = breaks.iter().copied().filter(|angle| *angle < PI - NARROW).collect();
-    ends.sort_by(f64::total_cmp);
-    let mut last = 0.0;
-    ends.retain(|angle| {
-        let is_apart = *angle > last + NARROW;
-        last = if is_apart { *angle } else { last };
-        is_apart
-    });
-    let profile = broken_arc(radius, [0.0, PI], &ends, level);
+/// A sphere about a point of the z axis that stands in the way.
+fn blocking_ball(blocker: &Blocker, height: f64, level: usize) -> Result<Body, CaseError> {
+    let profile = blocker.profile(|angle| n_rings(angle, level));
     let lifted: Vec<[f64; 2]> = profile.into_iter().map(|[r, z]| [r, z + height]).collect();
     Ok(Body::occluder(revolve(&lifted, &sectors(SECTORS * level), Facing::Left)?))
 }
@@ -164,18 +155,16 @@ pub fn coaxial_disks_blocked(case: &Case) -> Result<Answers, CaseError> {
         "sphere" => true,
         _ => return Err(CaseError::Needs("a blocker that is a disk or a sphere")),
     };
-    // Rings of the sphere end where its planes begin to cut a disk.
-    let mut breaks = horizons(radius, r2, h - height);
-    breaks.extend(horizons(radius, r1, height).into_iter().map(|angle| PI - angle));
+    let ball = Blocker::new(radius, [[[0.0, -height], [r1, -height]], [[0.0, h - height], [r2, h - height]]]);
     let blocker = |level: usize| {
         if is_sphere {
-            return blocking_ball(radius, height, &breaks, level);
+            return blocking_ball(&ball, height, level);
         }
         let frame = Frame { x: Vec3::X, y: Vec3::Y, z: Vec3::Z };
         Ok(Body::occluder(vec![disk(&frame, height * Vec3::Z, radius, &sectors(SECTORS * level))?]))
     };
     let open = |level| Ok(turned(level, vec![level_disk(r1, 0.0, true, level)?, level_disk(r2, h, false, level)?]));
-    let mut answers = factors(blocked(), &[("F_12", 0, 1)], |level| {
+    let mut answers = factors(blocked(is_sphere), &[("F_12", 0, 1)], |level| {
         let mut shape = open(level)?;
         shape.bodies.push(blocker(level)?);
         Ok(shape)
@@ -256,12 +245,19 @@ pub fn sphere_zones_blocked(case: &Case) -> Result<Answers, CaseError> {
     let [radius, inner] = lengths(&case.geometry, ["R", "r_inner"])?;
     let zones = [case.geometry.interval("zone_1_deg")?, case.geometry.interval("zone_2_deg")?];
     let open = |level| Ok(turned(level, vec![zone(radius, zones[0], level)?, zone(radius, zones[1], level)?]));
-    // Rings of the smaller sphere end where its planes touch an end of a zone.
-    let rims = zones.iter().flatten().map(|degrees| degrees.to_radians().sin_cos());
-    let breaks: Vec<f64> = rims.flat_map(|(sine, cosine)| horizons(inner, radius * sine, radius * cosine)).collect();
-    let mut answers = factors(blocked(), &[("F_12", 0, 1)], |level| {
+    let ball = Blocker::new(
+        inner,
+        zones.map(|ends| {
+            ends.map(|degrees| {
+                let (sine, cosine) = degrees.to_radians().sin_cos();
+                // Poles lie on the axis exactly.
+                [if degrees % 180.0 == 0.0 { 0.0 } else { radius * sine }, radius * cosine]
+            })
+        }),
+    );
+    let mut answers = factors(blocked(true), &[("F_12", 0, 1)], |level| {
         let mut shape = open(level)?;
-        shape.bodies.push(blocking_ball(inner, 0.0, &breaks, level)?);
+        shape.bodies.push(blocking_ball(&ball, 0.0, level)?);
         Ok(shape)
     })?;
     answers.values.extend(factors(even(9), &[("F_12_unoccluded", 0, 1)], open)?.values);

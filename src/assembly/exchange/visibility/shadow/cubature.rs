@@ -29,8 +29,8 @@ const ACROSS: f64 = 4.0;
 /// Share of the largest difference of values that a rule of one point may be off by about a singularity.
 const UNTOLD: f64 = 0.1;
 
-/// Points a pair may cost, and more for each of its cells.
-const MOST_POINTS: usize = 100_000;
+/// Points a pair may cost, some tenths of a second, and more for each of its cells. A few pairs among many facets need most of them.
+const MOST_POINTS: usize = 1_000_000;
 const POINTS_A_CELL: usize = 200;
 
 /// A bilinear quadrilateral (two corners may coincide) and what is known about the integral over it.
