@@ -1,9 +1,11 @@
 //! The command line.
 
+use super::exit::{Exit, Failure};
 use super::export;
 use super::memory::Bytes;
 use crate::assembly::{Exchange, Letter, Occlusion};
 use crate::linalg::format::MatrixFormat;
+use crate::solver::{self, Solver};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -130,6 +132,26 @@ impl SceneArguments {
     }
 }
 
+/// Which solver, and how far it goes.
+#[derive(Debug, Args)]
+pub struct Method {
+    /// Method: direct ones first, then those that iterate
+    #[arg(long, default_value = "cg", value_parser = clap::builder::PossibleValuesParser::new(solver_names()))]
+    pub solver: String,
+
+    /// Stop iterative solvers at this relative residual
+    #[arg(long, value_name = "RESIDUAL", default_value = "1e-12", value_parser = positive, allow_negative_numbers = true)]
+    pub tolerance: f64,
+}
+
+impl Method {
+    /// The solver.
+    pub fn solver(&self) -> Result<Box<dyn Solver>, Failure> {
+        let found = solver::named(&self.solver, self.tolerance);
+        found.ok_or_else(|| Failure::new(Exit::Usage, format!("no solver '{}'", self.solver)))
+    }
+}
+
 #[derive(Debug, Args)]
 pub struct Study {
     #[command(flatten)]
@@ -175,13 +197,8 @@ pub struct Solve {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// Method: direct ones first, then those that iterate
-    #[arg(long, default_value = "cg", value_parser = clap::builder::PossibleValuesParser::new(solver_names()))]
-    pub solver: String,
-
-    /// Stop iterative solvers at this relative residual
-    #[arg(long, value_name = "RESIDUAL", default_value = "1e-12", value_parser = positive, allow_negative_numbers = true)]
-    pub tolerance: f64,
+    #[command(flatten)]
+    pub method: Method,
 
     /// End iterative solvers after this many products with K, converged or not
     #[arg(long, value_name = "N", value_parser = products, allow_negative_numbers = true)]
@@ -219,13 +236,8 @@ pub struct Sensitivity {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// Method for both solutions
-    #[arg(long, default_value = "cg", value_parser = clap::builder::PossibleValuesParser::new(solver_names()))]
-    pub solver: String,
-
-    /// Stop iterative solvers at this relative residual
-    #[arg(long, value_name = "RESIDUAL", default_value = "1e-12", value_parser = positive, allow_negative_numbers = true)]
-    pub tolerance: f64,
+    #[command(flatten)]
+    pub method: Method,
 }
 
 #[derive(Debug, Args)]
@@ -262,7 +274,7 @@ pub struct Check {
 }
 
 fn solver_names() -> Vec<&'static str> {
-    crate::solver::everyone(1.0).iter().map(|solver| solver.name()).collect()
+    solver::everyone(1.0).iter().map(|solver| solver.name()).collect()
 }
 
 fn positive(text: &str) -> Result<f64, String> {

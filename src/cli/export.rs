@@ -1,17 +1,18 @@
 //! `etendue export`: the matrices of a scene as files, with what their rows stand for beside them.
 
 use super::arguments::{Arguments, Export};
-use super::exit::{Exit, Failure};
+use super::exit::Failure;
+use super::memory;
 use super::output;
 use super::progress::Bars;
 use super::provenance::provenance;
 use super::record::{BundleRecord, bundle_records};
 use super::scene::choose;
-use crate::assembly::{Letter, System, assemble_watched};
-use crate::basis::Bundles;
+use crate::assembly::Letter;
 use crate::linalg::format::{MatrixFormat, content_hash};
 use crate::linalg::{Dense, LinearOperator, Matrix};
-use crate::report::{Artifact, check_folder, write_whole};
+use crate::report::{Artifact, check_folder};
+use crate::scene::Scene;
 use crate::study::{Provenance, Watch};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -46,26 +47,19 @@ struct MatrixRecord {
 }
 
 pub fn run(arguments: &Arguments, export: &Export, command: Vec<String>) -> Result<(), Failure> {
-    let square = |n: usize| (n as u64).saturating_mul(n as u64);
     let n_files = |n_bands: usize| -> u64 {
         export.what.iter().map(|letter| if letter.has_bands() { n_bands as u64 } else { 1 }).sum()
     };
-    let chosen = choose(&export.scene, |scene, n| {
-        let files = square(n).saturating_mul(BYTES_AN_ENTRY).saturating_mul(n_files(scene.n_bands()));
-        System::memory_estimate(n).saturating_add(files)
-    })?;
+    let an_entry = |scene: &Scene| BYTES_AN_ENTRY.saturating_mul(n_files(scene.n_bands()));
+    let chosen = choose(&export.scene, |scene, n| memory::with_square(n, an_entry(scene)))?;
     let folder =
         export.output.clone().unwrap_or_else(|| PathBuf::from("out").join(format!("{}-matrices", chosen.scene.name())));
     check_folder(&folder)?;
     output::check_folder(&folder)?;
-    if !arguments.quiet {
-        chosen.announce();
-    }
 
     let bars = Bars::new(arguments);
     let exchange = export.scene.exchange();
-    let bundles = Bundles::new(&chosen.scene, chosen.resolution)?;
-    let system = assemble_watched(&chosen.scene, &bundles, exchange, &|done| bars.progress("assemble", done))?;
+    let (bundles, system) = chosen.assemble(arguments, exchange, &bars)?;
     bars.progress("write", 0.0);
 
     // Write every matrix, a file for every band in which it differs where a file holds one.
@@ -104,11 +98,9 @@ pub fn run(arguments: &Arguments, export: &Export, command: Vec<String>) -> Resu
 
     // Say what they are.
     let settings = [("format", export.format.to_string())];
-    let mut files: Vec<String> = artifacts.iter().map(|artifact| artifact.name.clone()).collect();
-    files.push("report.json".to_string());
     let record = Record {
         schema: "etendue.export/1",
-        files,
+        files: output::report_names(&artifacts),
         matrices,
         scene: chosen.scene.name(),
         n_bundles: bundles.n_bundles(),
@@ -116,9 +108,7 @@ pub fn run(arguments: &Arguments, export: &Export, command: Vec<String>) -> Resu
         bundles: bundle_records(&chosen.scene, &bundles, &system),
         provenance: provenance(&chosen, command, &exchange, settings),
     };
-    let text = serde_json::to_string_pretty(&record).map_err(|e| Failure::new(Exit::Internal, e.to_string()))? + "\n";
-    artifacts.push(Artifact { name: "report.json".to_string(), bytes: text.clone().into_bytes() });
-    write_whole(&folder, &artifacts)?;
+    let text = output::write_report(&folder, artifacts, &record)?;
     bars.progress("write", 1.0);
     drop(bars);
 

@@ -1,8 +1,10 @@
 //! How much memory a run may take, said before it takes it.
 
 use super::exit::{Exit, Failure};
+use crate::assembly::System;
 use crate::basis::{BasisError, Bundles, Resolution};
 use crate::scene::Scene;
+use crate::solver::Solver;
 use std::fmt;
 use std::str::FromStr;
 
@@ -85,6 +87,17 @@ pub fn check(
              = nothing was started\n  = {remedy}"
         ),
     ))
+}
+
+/// Bytes to assemble n bundles and then hold this many more for every pair of them.
+pub fn with_square(n: usize, an_entry: u64) -> u64 {
+    let square = (n as u64).saturating_mul(n as u64);
+    System::memory_estimate(n).saturating_add(square.saturating_mul(an_entry))
+}
+
+/// Bytes to assemble and solve: some methods write out the matrix, its factors, and one of them a copy.
+pub fn to_solve(method: &dyn Solver, n: usize) -> u64 {
+    with_square(n, if method.writes_out() { 16 } else { 0 })
 }
 
 /// What a run will take.

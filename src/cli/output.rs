@@ -1,6 +1,8 @@
 //! Standard output and standard error. A reader that hangs up early is no error.
 
 use super::exit::{Exit, Failure};
+use crate::report::{Artifact, MANIFEST, write_whole};
+use serde::Serialize;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -60,6 +62,19 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
         file.persist(&place).map_err(|error| error.error)
     });
     written.map(|_| ()).map_err(|error| unwritable(path, &error.kind().to_string()))
+}
+
+/// The names that a folder of these files has, its report among them.
+pub fn report_names(files: &[Artifact]) -> Vec<String> {
+    files.iter().map(|file| file.name.as_str()).chain([MANIFEST]).map(str::to_string).collect()
+}
+
+/// Writes a folder of files whole or not at all, with the record that lists them; the text of that.
+pub fn write_report(folder: &Path, mut files: Vec<Artifact>, record: &impl Serialize) -> Result<String, Failure> {
+    let text = serde_json::to_string_pretty(record).map_err(|e| Failure::new(Exit::Internal, e.to_string()))? + "\n";
+    files.push(Artifact { name: MANIFEST.to_string(), bytes: text.clone().into_bytes() });
+    write_whole(folder, &files)?;
+    Ok(text)
 }
 
 /// The folder that a path lies in, as far as its text tells.

@@ -1,13 +1,15 @@
 //! The scene that a command is about.
 
-use super::arguments::SceneArguments;
+use super::arguments::{Arguments, SceneArguments};
 use super::exit::{Exit, Failure};
 use super::memory::{self, Demand};
 use super::output;
-use crate::basis::Resolution;
+use super::progress::Bars;
+use crate::assembly::{Exchange, System, assemble_watched};
+use crate::basis::{Bundles, Resolution};
 use crate::gallery;
 use crate::scene::Scene;
-use crate::study::tessellations;
+use crate::study::{Watch, tessellations};
 use std::path::Path;
 
 /// A preset for files, which have none: about this many patches.
@@ -30,6 +32,21 @@ pub fn choose(arguments: &SceneArguments, bytes_needed: impl Fn(&Scene, usize) -
 }
 
 impl Chosen {
+    /// Cuts the scene and assembles it, having said what will be computed.
+    pub fn assemble(
+        &self,
+        arguments: &Arguments,
+        exchange: Exchange,
+        bars: &Bars,
+    ) -> Result<(Bundles, System), Failure> {
+        if !arguments.quiet {
+            self.announce();
+        }
+        let bundles = Bundles::new(&self.scene, self.resolution)?;
+        let system = assemble_watched(&self.scene, &bundles, exchange, &|done| bars.progress("assemble", done))?;
+        Ok((bundles, system))
+    }
+
     /// Says on standard error what will be computed, and which of its numbers are presets.
     pub fn announce(&self) {
         let Self { scene, resolution, demand, is_preset } = self;

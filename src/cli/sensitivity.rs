@@ -2,14 +2,12 @@
 
 use super::arguments::{Arguments, Sensitivity};
 use super::exit::{Exit, Failure};
+use super::memory;
 use super::output;
 use super::progress::Bars;
 use super::provenance::provenance;
 use super::scene::choose;
-use crate::assembly::{System, assemble_watched};
-use crate::basis::Bundles;
 use crate::scene::Scene;
-use crate::solver;
 use crate::study::{Provenance, Quantity, SensitivityOutcome, Sensor, Watch, sensitivity};
 use serde::Serialize;
 
@@ -27,30 +25,23 @@ struct Record<'a> {
 }
 
 pub fn run(arguments: &Arguments, asked: &Sensitivity, command: Vec<String>) -> Result<(), Failure> {
-    let method = solver::named(&asked.solver, asked.tolerance);
-    let method = method.ok_or_else(|| Failure::new(Exit::Usage, format!("no solver '{}'", asked.solver)))?;
-    let an_entry = if method.writes_out() { 16 } else { 0 };
-    let square = |n: usize| (n as u64).saturating_mul(n as u64);
-    let chosen =
-        choose(&asked.scene, |_, n| System::memory_estimate(n).saturating_add(square(n).saturating_mul(an_entry)))?;
+    let method = asked.method.solver()?;
+    let chosen = choose(&asked.scene, |_, n| memory::to_solve(&*method, n))?;
     let sensor = sensor(&chosen.scene, &asked.sensor)?;
     if let Some(path) = &asked.output {
         output::check_file(path)?;
     }
-    if !arguments.quiet {
-        chosen.announce();
-    }
 
     let bars = Bars::new(arguments);
     let exchange = asked.scene.exchange();
-    let bundles = Bundles::new(&chosen.scene, chosen.resolution)?;
-    let system = assemble_watched(&chosen.scene, &bundles, exchange, &|done| bars.progress("assemble", done))?;
+    let (bundles, system) = chosen.assemble(arguments, exchange, &bars)?;
     bars.progress("solve", 0.0);
     let outcome = sensitivity(&chosen.scene, &bundles, &system, sensor, &*method)?;
     bars.progress("solve", 1.0);
     drop(bars);
 
-    let settings = [("solver", method.name().to_string()), ("solver_tolerance", format!("{:e}", asked.tolerance))];
+    let settings =
+        [("solver", method.name().to_string()), ("solver_tolerance", format!("{:e}", asked.method.tolerance))];
     let unit = match sensor.quantity {
         Quantity::Radiance => "W m⁻² sr⁻¹",
         Quantity::Irradiance => "W m⁻²",

@@ -3,15 +3,14 @@
 use super::arguments::{Arguments, Solve};
 use super::exit::{Exit, Failure, NO_STEADY_STATE};
 use super::matrix;
+use super::memory;
 use super::output;
 use super::progress::Bars;
 use super::provenance::provenance;
 use super::record::record;
 use super::scene::choose;
 use super::table::table;
-use crate::assembly::{System, assemble_watched};
-use crate::basis::Bundles;
-use crate::solver::{self, Iteration, SolveReport, Stop};
+use crate::solver::{Iteration, SolveReport, Stop};
 use crate::study::Watch;
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -23,29 +22,20 @@ const DRIFT: f64 = 10.0;
 const NO_ANSWER: f64 = 1e-3;
 
 pub fn run(arguments: &Arguments, solve: &Solve, command: Vec<String>) -> Result<(), Failure> {
-    let method = solver::named(&solve.solver, solve.tolerance);
-    let method = method.ok_or_else(|| Failure::new(Exit::Usage, format!("no solver '{}'", solve.solver)))?;
+    let method = solve.method.solver()?;
 
     if let (Some(matrix), Some(emission)) = (&solve.matrix, &solve.emission) {
         return matrix::run(arguments, solve, &*method, matrix, emission);
     }
 
-    // Some methods write out the matrix, its factors, and one of them a copy.
-    let an_entry = if method.writes_out() { 16 } else { 0 };
-    let square = |n: usize| (n as u64).saturating_mul(n as u64);
-    let needed = |n: usize| System::memory_estimate(n).saturating_add(square(n).saturating_mul(an_entry));
-    let chosen = choose(&solve.scene, |_, n| needed(n))?;
+    let chosen = choose(&solve.scene, |_, n| memory::to_solve(&*method, n))?;
     if let Some(path) = &solve.output {
         output::check_file(path)?;
-    }
-    if !arguments.quiet {
-        chosen.announce();
     }
 
     let bars = Bars::new(arguments);
     let exchange = solve.scene.exchange();
-    let bundles = Bundles::new(&chosen.scene, chosen.resolution)?;
-    let system = assemble_watched(&chosen.scene, &bundles, exchange, &|done| bars.progress("assemble", done))?;
+    let (bundles, system) = chosen.assemble(arguments, exchange, &bars)?;
     bars.progress("solve", 0.0);
 
     let start = Instant::now();
@@ -56,7 +46,8 @@ pub fn run(arguments: &Arguments, solve: &Solve, command: Vec<String>) -> Result
 
     // Write the JSON object where it is wanted, or show a table.
     if arguments.json || solve.output.is_some() {
-        let settings = [("solver", method.name().to_string()), ("solver_tolerance", format!("{:e}", solve.tolerance))];
+        let settings =
+            [("solver", method.name().to_string()), ("solver_tolerance", format!("{:e}", solve.method.tolerance))];
         let source = provenance(&chosen, command, &exchange, settings);
         let object = record(&chosen.scene, &bundles, &system, &solution, seconds, source);
         let text = serde_json::to_string(&object).map_err(|e| Failure::new(Exit::Internal, e.to_string()))? + "\n";
@@ -89,7 +80,7 @@ pub fn observer(arguments: &Arguments, solve: &Solve) -> impl FnMut(Iteration<'_
 /// The answer is there either way; whether it is the one asked for, the exit code says.
 pub fn check_converged(report: &SolveReport, solve: &Solve) -> Result<(), Failure> {
     let SolveReport { method, products, true_residual, .. } = report;
-    let asked = solve.tolerance;
+    let asked = solve.method.tolerance;
     let remark = match (report.stop, solve.max_products) {
         (Stop::Budget | Stop::Observer, Some(most)) => format!("--max-products {most} ended it"),
         (Stop::Budget | Stop::Observer, None) => "another --solver may get there".to_string(),

@@ -1,14 +1,13 @@
 //! `etendue spectrum`: how fast light dies away.
 
 use super::arguments::{Arguments, Spectrum};
-use super::exit::{Exit, Failure};
+use super::exit::Failure;
+use super::memory;
 use super::output;
 use super::progress::Bars;
 use super::provenance::provenance;
 use super::scene::choose;
-use crate::assembly::{System, assemble_watched};
-use crate::basis::Bundles;
-use crate::report::{check_folder, spectrum_files, write_whole};
+use crate::report::{check_folder, spectrum_files};
 use crate::study::{Provenance, SpectrumOutcome, Watch, spectrum};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -26,37 +25,30 @@ pub struct Record<'a> {
 
 pub fn run(arguments: &Arguments, asked: &Spectrum, command: Vec<String>) -> Result<(), Failure> {
     // The matrix in full and its decompositions, where it is small enough for them.
-    let square = |n: usize| (n as u64).saturating_mul(n as u64);
-    let chosen = choose(&asked.scene, |_, n| System::memory_estimate(n).saturating_add(square(n).saturating_mul(24)))?;
+    let chosen = choose(&asked.scene, |_, n| memory::with_square(n, 24))?;
     let name = chosen.scene.name();
     let folder = asked.output.clone().unwrap_or_else(|| PathBuf::from("out").join(format!("{name}-spectrum")));
     output::check_folder(&folder)?;
     check_folder(&folder)?;
-    if !arguments.quiet {
-        chosen.announce();
-    }
 
     let bars = Bars::new(arguments);
     let exchange = asked.scene.exchange();
-    let bundles = Bundles::new(&chosen.scene, chosen.resolution)?;
-    let system = assemble_watched(&chosen.scene, &bundles, exchange, &|done| bars.progress("assemble", done))?;
+    let (_, system) = chosen.assemble(arguments, exchange, &bars)?;
     let outcome = spectrum(&system, chosen.scene.bands(), asked.pairs, asked.tolerance, &|done| {
         bars.progress("spectrum", done);
     })?;
     drop(bars);
 
-    let mut files = spectrum_files(&outcome)?;
+    let files = spectrum_files(&outcome)?;
     let settings = [("eigenpairs", asked.pairs.to_string()), ("eigen_tolerance", format!("{:e}", asked.tolerance))];
     let record = Record {
         schema: "etendue.spectrum/1",
         scene: name,
         outcome: &outcome,
-        files: files.iter().map(|file| file.name.clone()).chain(["report.json".to_string()]).collect(),
+        files: output::report_names(&files),
         provenance: provenance(&chosen, command, &exchange, settings),
     };
-    let text = serde_json::to_string_pretty(&record).map_err(|e| Failure::new(Exit::Internal, e.to_string()))? + "\n";
-    files.push(crate::report::Artifact { name: "report.json".to_string(), bytes: text.clone().into_bytes() });
-    write_whole(&folder, &files)?;
+    let text = output::write_report(&folder, files, &record)?;
     if arguments.json {
         return output::print(&text);
     }

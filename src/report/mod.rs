@@ -11,7 +11,7 @@ mod picture;
 mod render;
 
 pub use error::{Foreign, ReportError};
-pub use folder::{check_folder, write_whole};
+pub use folder::{MANIFEST, check_folder, write_whole};
 pub use render::{render, spectrum_files};
 
 /// One file of a report.

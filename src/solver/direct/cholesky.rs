@@ -10,7 +10,7 @@
 use super::factored::Band;
 use crate::linalg::{Block, CholeskyFactor, Dense, Equation, FactorError, SelfAdjoint, Sparse};
 use crate::solver::report::{Work, conclude};
-use crate::solver::self_adjoint::check_self_adjoint;
+use crate::solver::self_adjoint::{CHECK, checked_form};
 use crate::solver::{Observer, Solution, SolveError, Solver, Stop};
 use rayon::prelude::*;
 
@@ -40,14 +40,13 @@ pub(super) fn solve_symmetrised(
     equation: Equation<'_>,
     factor: impl Fn(SelfAdjoint<'_>, usize, &[f64]) -> Result<Band, FactorError>,
 ) -> Result<Solution, SolveError> {
-    let form = equation.self_adjoint.ok_or(SolveError::NoSelfAdjointForm { method })?;
-    check_self_adjoint(method, form)?;
+    let form = checked_form(method, equation)?;
     let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
     let weight: Vec<f64> = form.etendue.iter().map(|mu| mu.sqrt()).collect();
 
     // The right-hand side for all bands at once.
     let (mut scratch, mut right) = (Block::zeros(n, n_bands), Block::zeros(n, n_bands));
-    let mut n_applies = 2 + form.right_side(equation.emission, &mut scratch, &mut right);
+    let mut n_applies = CHECK + form.right_side(equation.emission, &mut scratch, &mut right);
 
     let mut answer = Block::zeros(n, n_bands);
     let mut fullest = None;

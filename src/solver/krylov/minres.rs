@@ -12,7 +12,7 @@ use super::inner::{add_scaled, set_scaled};
 use crate::linalg::{Block, Equation};
 use crate::solver::monitor::Monitor;
 use crate::solver::report::{band_residual, conclude, relative_residual};
-use crate::solver::self_adjoint::check_self_adjoint;
+use crate::solver::self_adjoint::{CHECK, checked_form};
 use crate::solver::{Observer, Solution, SolveError, Solver};
 
 /// Iterates until the residual is below the tolerance.
@@ -41,9 +41,8 @@ impl Solver for Minres {
     fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
         let method = self.name();
         let mut monitor = Monitor::new(method, equation, self.tolerance, observer);
-        let form = equation.self_adjoint.ok_or(SolveError::NoSelfAdjointForm { method })?;
-        check_self_adjoint(method, form)?;
-        monitor.count_applies(2);
+        let form = checked_form(method, equation)?;
+        monitor.count_applies(CHECK);
 
         // Start from u = 0: the first Lanczos vector is the right-hand side.
         let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());

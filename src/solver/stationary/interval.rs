@@ -10,7 +10,7 @@
 use crate::linalg::{Block, Dense, Equation, symmetric_eigenvalues};
 use crate::solver::SolveError;
 use crate::solver::monitor::Monitor;
-use crate::solver::self_adjoint::check_self_adjoint;
+use crate::solver::self_adjoint::{CHECK, checked_form};
 
 /// Lanczos steps.
 const STEPS: usize = 12;
@@ -35,9 +35,8 @@ pub(super) fn measure(
     equation: Equation<'_>,
     monitor: &mut Monitor<'_>,
 ) -> Result<Vec<Interval>, SolveError> {
-    let form = equation.self_adjoint.ok_or(SolveError::NoSelfAdjointForm { method })?;
-    check_self_adjoint(method, form)?;
-    monitor.count_applies(2);
+    let form = checked_form(method, equation)?;
+    monitor.count_applies(CHECK);
     let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
 
     // Begin with a vector that leans towards uniform light and has a share in everything.
