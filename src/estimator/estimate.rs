@@ -99,15 +99,15 @@ impl Estimate {
 
     /// No samples yet.
     pub(super) fn empty(estimator: &dyn Estimator, seed: u64) -> Self {
-        let (n, n_bands) = (estimator.n_bundles(), estimator.n_bands());
+        let (n, n_columns) = (estimator.n_bundles(), estimator.n_columns());
         Self {
             estimator: estimator.name(),
             truth: estimator.truth(),
             seed,
             n_samples: 0,
             samples: Vec::new(),
-            mean: Block::zeros(n, n_bands),
-            variance_of_mean: Block::from_fn(n, n_bands, |_, _| f64::NAN),
+            mean: Block::zeros(n, n_columns),
+            variance_of_mean: Block::from_fn(n, n_columns, |_, _| f64::NAN),
             independent_bundles: (0..estimator.n_starts()).all(|start| estimator.reach(start).len() <= 1),
         }
     }

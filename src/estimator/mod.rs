@@ -5,20 +5,21 @@
 //! a function of (seed, estimator, start, number) alone: more samples, other threads, another order change none.
 
 mod bands;
-mod emitters;
+mod bounces;
 mod error;
 mod estimate;
-mod matrix_walk;
-mod path_tracer;
+mod paths;
 mod run;
 mod score;
+mod walks;
 
+pub use bounces::Bounces;
 pub use error::EstimatorError;
 pub use estimate::{Estimate, MergeError, WeightedMean};
-pub use matrix_walk::{MatrixWalk, Scoring};
-pub use path_tracer::PathTracer;
+pub use paths::PathTracer;
 pub use run::{estimate, estimate_range, estimate_watched};
 pub use score::Score;
+pub use walks::{MatrixWalk, Scoring};
 
 use crate::sampling::{Stream, Streams};
 use std::fmt;
@@ -55,7 +56,8 @@ pub trait Estimator: Sync {
 
     fn n_bundles(&self) -> usize;
 
-    fn n_bands(&self) -> usize;
+    /// Numbers scored a bundle: one a band, or one for every bounce and band, see [`Bounces`].
+    fn n_columns(&self) -> usize;
 
     /// How many starts there are, at most 2³².
     fn n_starts(&self) -> usize {

@@ -37,14 +37,14 @@ pub fn estimate_watched(
     seed: u64,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Estimate {
-    let (n_starts, n_bands) = (estimator.n_starts(), estimator.n_bands());
+    let (n_starts, n_columns) = (estimator.n_starts(), estimator.n_columns());
     let mut estimate = Estimate::empty(estimator, seed);
     if samples.is_empty() || n_starts == 0 {
         progress(1.0);
         return estimate;
     }
     let streams = Streams::new(seed, estimator.name());
-    let mut moments = vec![Moments::default(); estimator.n_bundles() * n_bands];
+    let mut moments = vec![Moments::default(); estimator.n_bundles() * n_columns];
 
     // Draw some chunks of samples from all starts at a time.
     let n_samples = samples.end - samples.start;
@@ -60,7 +60,7 @@ pub fn estimate_watched(
                 let begin = samples.start + (first_chunk + (task / n_starts) as u64) * SAMPLES_A_TASK;
                 let end = samples.end.min(begin.saturating_add(SAMPLES_A_TASK));
                 let start = task % n_starts;
-                let mut score = Score::new(estimator.reach(start), n_bands);
+                let mut score = Score::new(estimator.reach(start), n_columns);
                 estimator.samples(start, begin..end, &streams, &mut score);
                 progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / n_tasks as f64);
                 score.into_moments()
@@ -70,7 +70,7 @@ pub fn estimate_watched(
         // Merge them in order.
         for (task, drawn) in wave.iter().enumerate() {
             let reach = estimator.reach(task % n_starts);
-            let merged = &mut moments[reach.start * n_bands..reach.end * n_bands];
+            let merged = &mut moments[reach.start * n_columns..reach.end * n_columns];
             merged.iter_mut().zip(drawn).for_each(|(merged, drawn)| merged.merge(drawn));
         }
     }
@@ -78,8 +78,8 @@ pub fn estimate_watched(
     estimate.n_samples = n_samples;
     estimate.samples = vec![samples];
     for (k, moments) in moments.iter().enumerate() {
-        estimate.mean.set(k / n_bands, k % n_bands, moments.mean());
-        estimate.variance_of_mean.set(k / n_bands, k % n_bands, moments.variance_of_mean());
+        estimate.mean.set(k / n_columns, k % n_columns, moments.mean());
+        estimate.variance_of_mean.set(k / n_columns, k % n_columns, moments.variance_of_mean());
     }
     estimate
 }

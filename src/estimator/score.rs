@@ -10,8 +10,8 @@ use std::ops::Range;
 pub struct Score {
     /// The first bundle in reach.
     first: usize,
-    n_bands: usize,
-    /// Totals of the sample, bundle by bundle, one a band.
+    n_columns: usize,
+    /// Totals of the sample, bundle by bundle, one a column.
     totals: Vec<f64>,
     /// Moments of the samples that have ended, likewise.
     moments: Vec<Moments>,
@@ -22,29 +22,29 @@ pub struct Score {
 }
 
 impl Score {
-    pub(super) fn new(reach: Range<usize>, n_bands: usize) -> Self {
+    pub(super) fn new(reach: Range<usize>, n_columns: usize) -> Self {
         let n_bundles = reach.len();
         Self {
             first: reach.start,
-            n_bands,
-            totals: vec![0.0; n_bundles * n_bands],
-            moments: vec![Moments::default(); n_bundles * n_bands],
+            n_columns,
+            totals: vec![0.0; n_bundles * n_columns],
+            moments: vec![Moments::default(); n_bundles * n_columns],
             n_samples: 0,
             is_touched: vec![false; n_bundles],
             touched: Vec::new(),
         }
     }
 
-    /// Adds to one bundle and band.
+    /// Adds to one bundle and column.
     ///
     /// # Panics
     /// If the bundle is out of the start's reach.
     #[inline]
-    pub fn add(&mut self, bundle: usize, band: usize, value: f64) {
-        self.totals(bundle)[band] += value;
+    pub fn add(&mut self, bundle: usize, column: usize, value: f64) {
+        self.totals(bundle)[column] += value;
     }
 
-    /// This sample's totals for one bundle, one a band, to be added to.
+    /// This sample's totals for one bundle, one a column, to be added to.
     ///
     /// # Panics
     /// If the bundle is out of the start's reach.
@@ -55,7 +55,7 @@ impl Score {
             self.is_touched[local] = true;
             self.touched.push(local);
         }
-        &mut self.totals[local * self.n_bands..][..self.n_bands]
+        &mut self.totals[local * self.n_columns..][..self.n_columns]
     }
 
     /// Ends one sample: its totals become numbers to average, and start again from zero.
@@ -64,7 +64,7 @@ impl Score {
         self.n_samples += 1;
         for local in self.touched.drain(..) {
             self.is_touched[local] = false;
-            let here = local * self.n_bands..(local + 1) * self.n_bands;
+            let here = local * self.n_columns..(local + 1) * self.n_columns;
             for (total, moments) in self.totals[here.clone()].iter_mut().zip(&mut self.moments[here]) {
                 moments.push(*total);
                 *total = 0.0;

@@ -8,12 +8,12 @@ use etendue::assembly::{Exchange, Occlusion, System, assemble};
 use etendue::basis::{Bundles, Resolution};
 use etendue::compare::{ZVerdict, compare_blocks, relative_max};
 use etendue::estimator::{
-    Estimate, Estimator, EstimatorError, MatrixWalk, MergeError, PathTracer, Score, Scoring, Truth, estimate,
+    Bounces, Estimate, Estimator, EstimatorError, MatrixWalk, MergeError, PathTracer, Score, Scoring, Truth, estimate,
     estimate_range, estimate_watched,
 };
 use etendue::gallery::{self, Exact};
 use etendue::geometry::{Polygon, Vec3};
-use etendue::linalg::Block;
+use etendue::linalg::{Block, LinearOperator};
 use etendue::sampling::Stream;
 use etendue::scattering::{Brdf, Lambert, Phong};
 use etendue::scene::{Scene, SceneDescription, Surface};
@@ -139,13 +139,13 @@ impl Estimator for OnePerCentMore<'_> {
         self.honest.n_bundles()
     }
 
-    fn n_bands(&self) -> usize {
-        self.honest.n_bands()
+    fn n_columns(&self) -> usize {
+        self.honest.n_columns()
     }
 
     fn sample(&self, start: usize, stream: &mut Stream, score: &mut Score) {
         self.honest.sample(start, stream, score);
-        (0..self.n_bands()).for_each(|band| score.add(start, band, 0.01 * self.exact.get(start, band)));
+        (0..self.n_columns()).for_each(|band| score.add(start, band, 0.01 * self.exact.get(start, band)));
     }
 }
 
@@ -167,7 +167,7 @@ impl Estimator for Scattershot {
         self.n + 1
     }
 
-    fn n_bands(&self) -> usize {
+    fn n_columns(&self) -> usize {
         2
     }
 
@@ -390,6 +390,57 @@ fn paths_see_both_sides() {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------------------
+// Bounce by bounce
+
+/// KᵏE side by side for k = 0 … `last`, or their sum.
+fn bounces_of(system: &System, bounces: Bounces) -> Block {
+    let last = bounces.last().expect("a last bounce");
+    let (n, n_bands) = (system.n_bundles(), system.n_bands());
+    let mut powers = vec![system.emission().clone()];
+    for k in 0..last {
+        let mut next = Block::zeros(n, n_bands);
+        system.transport().apply(&powers[k], &mut next);
+        powers.push(next);
+    }
+    match bounces {
+        Bounces::Each(_) => Block::from_fn(n, n_bands * (last + 1), |i, c| powers[c / n_bands].get(i, c % n_bands)),
+        _ => Block::from_fn(n, n_bands, |i, band| powers.iter().map(|power| power.get(i, band)).sum()),
+    }
+}
+
+#[test]
+fn walks_tell_bounces_apart() {
+    let system = system(&open_room(), 0.5);
+    for bounces in [Bounces::Each(8), Bounces::UpTo(3), Bounces::UpTo(0)] {
+        let exact = bounces_of(&system, bounces);
+        for scoring in [Scoring::Collision, Scoring::Absorption] {
+            let walk = MatrixWalk::collision(&system).unwrap().with_scoring(scoring).with_bounces(bounces);
+            let drawn = estimate(&walk, N_WALKS, SEED);
+            // Late bounces score too rarely to be looked at bundle by bundle.
+            let verdict = pooled_against(&exact, &drawn, system.etendue());
+            assert!(verdict.agrees, "{bounces:?}: {verdict:?}");
+        }
+    }
+}
+
+/// Bounce k of the furnace is albedoᵏ times what it emits.
+#[test]
+fn paths_tell_bounces_apart() {
+    let (albedo, emission) = ([0.5, 0.9], [1.0, 0.25]);
+    let scene = gallery::furnace_cube(&albedo, &emission).unwrap();
+    let bundles = bundles(&scene, 1.0);
+    let exact = |columns: usize, of: &dyn Fn(i32, usize) -> f64| {
+        Block::from_fn(bundles.n_bundles(), columns, |_, c| of((c / 2) as i32, c % 2))
+    };
+    let each = exact(18, &|k, band| emission[band] * albedo[band].powi(k));
+    let sum = exact(2, &|_, band| emission[band] * (0..4).map(|k| albedo[band].powi(k)).sum::<f64>());
+    for (bounces, exact) in [(Bounces::Each(8), each), (Bounces::UpTo(3), sum)] {
+        let tracer = PathTracer::new(&scene, &bundles).unwrap().with_bounces(bounces);
+        assert_agrees_and_has_power(&tracer, &exact, bundles.etendue(), N_PATHS);
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------------------
 // What holds of every estimator
 
 /// Calls `check` with one estimator of each kind, gathering and shooting.
@@ -445,7 +496,7 @@ fn ranges_merge_to_the_whole() {
 fn walks_abreast_are_the_same_walks() {
     let system = system(&open_room(), 0.5);
     for walk in [MatrixWalk::collision(&system).unwrap(), MatrixWalk::absorption(&system).unwrap()] {
-        let nothing = Block::zeros(walk.n_bundles(), walk.n_bands());
+        let nothing = Block::zeros(walk.n_bundles(), walk.n_columns());
         let one_by_one = OnePerCentMore { honest: &walk, exact: &nothing };
         let (abreast, single) = (estimate(&walk, 1500, SEED), estimate(&one_by_one, 1500, SEED));
         assert!(relative_max(&abreast.mean, &single.mean) < MERGE_TOLERANCE);

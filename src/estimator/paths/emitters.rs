@@ -1,6 +1,6 @@
 //! Points on what emits, chosen by power.
 
-use super::EstimatorError;
+use super::super::EstimatorError;
 use crate::geometry::Vec3;
 use crate::sampling::{AliasTable, Stream};
 use crate::scene::Scene;

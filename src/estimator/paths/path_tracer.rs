@@ -17,34 +17,19 @@
 //! Cost: a closest-hit ray and a shadow ray a vertex. Visibility leaves out the plane that a ray starts on by identity; there is no epsilon.
 //! Source: Kajiya 1986; Veach 1997, §9.2 (balance heuristic), §10.4 (roulette).
 
-use super::bands::Bands;
-use super::emitters::Emitters;
-use super::{Estimator, EstimatorError, Score, Truth};
-use crate::basis::{Bundles, Patch};
-use crate::geometry::{Frame, Polygon, Ray, Tracer, Vec3};
-use crate::sampling::{Stream, warp};
-use crate::scattering::Brdf;
+use super::super::bands::Bands;
+use super::super::bounces::Columns;
+use super::super::{Bounces, Estimator, EstimatorError, Score, Truth};
+use super::stage::{Stage, Vertex};
+use crate::basis::Bundles;
+use crate::geometry::Ray;
+use crate::sampling::Stream;
 use crate::scene::{Scene, Side};
 
 /// Paths whose mean is the continuous radiance of every bundle.
 pub struct PathTracer<'a> {
-    scene: &'a Scene,
-    /// The patch of every bundle.
-    patches: Vec<&'a Patch>,
-    tracer: Tracer,
-    emitters: Emitters,
-    /// Of every facet, about the normals of its front and of its back.
-    frames: Vec<[Frame; 2]>,
-}
-
-/// A point of a path, and the direction in which its light is wanted.
-struct Vertex<'a> {
-    facet: usize,
-    position: Vec3,
-    frame: &'a Frame,
-    brdf: &'a dyn Brdf,
-    /// Local, unit length.
-    outgoing: Vec3,
+    stage: Stage<'a>,
+    columns: Columns,
 }
 
 impl<'a> PathTracer<'a> {
@@ -53,45 +38,20 @@ impl<'a> PathTracer<'a> {
     /// # Errors
     /// Bundles that are not all on patches of this scene, or emission beyond what can be summed.
     pub fn new(scene: &'a Scene, bundles: &'a Bundles) -> Result<Self, EstimatorError> {
-        let n_facets = scene.facets().len();
-        let patches = (0..bundles.n_bundles()).map(|bundle| {
-            let (element, _) = bundles.element_of(bundle);
-            let patch = bundles.patch(element).ok_or(EstimatorError::NotAPatch { element })?;
-            let belongs = patch.facet < n_facets && scene.surface_of(patch.facet).brdf(patch.side).is_some();
-            let foreign = EstimatorError::ForeignBundles { element, facet: patch.facet, n_facets };
-            if belongs { Ok(patch) } else { Err(foreign) }
-        });
-        let patches = patches.collect::<Result<_, _>>()?;
-        let polygons: Vec<&Polygon> = (0..n_facets).map(|facet| scene.polygon(facet)).collect();
-        let frames = polygons.iter().map(|p| [Frame::about(p.normal()), Frame::about(-p.normal())]).collect();
-        Ok(Self { scene, patches, tracer: Tracer::new(&polygons), emitters: Emitters::new(scene)?, frames })
+        let columns = Columns { n_bands: scene.n_bands(), bounces: Bounces::All };
+        Ok(Self { stage: Stage::new(scene, bundles)?, columns })
     }
 
-    /// Where a path starts: uniform in the étendue of a bundle.
-    fn leave(&self, patch: &Patch, stream: &mut Stream) -> Option<Vertex<'_>> {
-        let position = patch.polygon.sample(stream.uniform2());
-        let outgoing = warp::cosine_hemisphere(stream.uniform2()).into();
-        self.vertex(patch.facet, patch.side, position, outgoing)
-    }
-
-    /// A point of a facet's side; `None` where it is black.
-    fn vertex(&self, facet: usize, side: Side, position: Vec3, outgoing: Vec3) -> Option<Vertex<'_>> {
-        let brdf = self.scene.surface_of(facet).brdf(side)?;
-        Some(Vertex { facet, position, frame: self.frame(facet, side), brdf, outgoing })
-    }
-
-    fn frame(&self, facet: usize, side: Side) -> &Frame {
-        let [front, back] = &self.frames[facet];
-        match side {
-            Side::Front => front,
-            Side::Back => back,
-        }
+    /// The same paths, scored for these bounces.
+    pub fn with_bounces(self, bounces: Bounces) -> Self {
+        Self { columns: Columns { bounces, ..self.columns }, ..self }
     }
 
     /// Adds what a point drawn on the emitters sends to the vertex and on along the path, weighed against finding it by a ray.
     fn add_direct(&self, vertex: &Vertex<'_>, throughput: &[f64], stream: &mut Stream, totals: &mut [f64]) {
-        let (facet, point) = self.emitters.sample(self.scene, stream);
-        if self.tracer.coplanar(facet, vertex.facet) {
+        let stage = &self.stage;
+        let (facet, point) = stage.emitters.sample(stage.scene, stream);
+        if stage.tracer.coplanar(facet, vertex.facet) {
             return;
         }
 
@@ -100,17 +60,17 @@ impl<'a> PathTracer<'a> {
         let distance = offset.length();
         let direction = offset / distance;
         let incident = vertex.frame.to_local(direction);
-        let emitter_cosine = -direction.dot(self.scene.polygon(facet).normal());
+        let emitter_cosine = -direction.dot(stage.scene.polygon(facet).normal());
         if !(incident.z > 0.0 && emitter_cosine > 0.0) {
             return;
         }
 
         // f E cosθ′ / p, times p / (p + q).
-        let by_point = self.emitters.density(facet) * distance * distance / emitter_cosine;
+        let by_point = stage.emitters.density(facet) * distance * distance / emitter_cosine;
         let by_ray = vertex.brdf.pdf(vertex.outgoing, incident);
         let scale = incident.z / (by_point + by_ray);
-        if !self.tracer.occluded(vertex.position, point, [vertex.facet, facet]) {
-            let emission = &self.scene.surface_of(facet).emission;
+        if !stage.tracer.occluded(vertex.position, point, [vertex.facet, facet]) {
+            let emission = &stage.scene.surface_of(facet).emission;
             for (band, total) in totals.iter_mut().enumerate() {
                 let reflected = vertex.brdf.eval(band, incident, vertex.outgoing) * scale;
                 *total += throughput[band] * reflected * emission[band];
@@ -129,22 +89,27 @@ impl Estimator for PathTracer<'_> {
     }
 
     fn n_bundles(&self) -> usize {
-        self.patches.len()
+        self.stage.patches.len()
     }
 
-    fn n_bands(&self) -> usize {
-        self.scene.n_bands()
+    fn n_columns(&self) -> usize {
+        self.columns.count()
     }
 
     fn sample(&self, start: usize, stream: &mut Stream, score: &mut Score) {
         // Leave the bundle with what it emits.
-        let patch = self.patches[start];
-        let totals = score.totals(start);
-        let surface = self.scene.surface_of(patch.facet);
-        totals.iter_mut().enumerate().for_each(|(band, total)| *total += surface.emitted(patch.side, band));
-        let Some(mut vertex) = self.leave(patch, stream) else { return };
-        let mut throughput = Bands::all(1.0, totals.len());
-        loop {
+        let (stage, columns) = (&self.stage, self.columns);
+        let patch = stage.patches[start];
+        let surface = stage.scene.surface_of(patch.facet);
+        let Some(emitted) = columns.of(0) else { return };
+        for (band, total) in score.totals(start)[emitted].iter_mut().enumerate() {
+            *total += surface.emitted(patch.side, band);
+        }
+        let Some(mut vertex) = stage.leave(patch, stream) else { return };
+        let mut throughput = Bands::all(1.0, columns.n_bands);
+        for bounce in 1.. {
+            let Some(here) = columns.of(bounce) else { return };
+            let totals = &mut score.totals(start)[here];
             self.add_direct(&vertex, &throughput, stream, totals);
 
             // Draw a direction that light may come from.
@@ -169,21 +134,21 @@ impl Estimator for PathTracer<'_> {
 
             // Go and see where it came from.
             let ray = Ray { origin: vertex.position, direction: vertex.frame.to_world(incident) };
-            let Some(hit) = self.tracer.closest(&ray, Some(vertex.facet)) else { return };
+            let Some(hit) = stage.tracer.closest(&ray, Some(vertex.facet)) else { return };
             let side = if hit.front { Side::Front } else { Side::Back };
-            let outgoing = self.frame(hit.polygon, side).to_local(-ray.direction);
+            let outgoing = stage.frame(hit.polygon, side).to_local(-ray.direction);
 
             // Add what is emitted there, weighed against drawing that point.
-            let density = self.emitters.density(hit.polygon);
+            let density = stage.emitters.density(hit.polygon);
             if hit.front && density > 0.0 {
                 let by_point = density * hit.t * hit.t / outgoing.z;
                 let share = by_ray / (by_ray + by_point);
-                let emission = &self.scene.surface_of(hit.polygon).emission;
+                let emission = &stage.scene.surface_of(hit.polygon).emission;
                 for (band, total) in totals.iter_mut().enumerate() {
                     *total += throughput[band] * share * emission[band];
                 }
             }
-            let Some(next) = self.vertex(hit.polygon, side, ray.at(hit.t), outgoing) else { return };
+            let Some(next) = stage.vertex(hit.polygon, side, ray.at(hit.t), outgoing) else { return };
             vertex = next;
         }
     }

@@ -22,11 +22,12 @@
 //! Cost: one random number, one alias slot and 2 × bands additions a step. A slot is 16 bytes, for every entry of G above zero.
 //! Source: Forsythe & Leibler 1950 (last event); Wasow 1952 (every visit).
 
-use super::bands::Bands;
-use super::{Estimator, EstimatorError, Score, Truth};
+use super::super::bands::Bands;
+use super::super::bounces::Columns;
+use super::super::{Bounces, Estimator, EstimatorError, Score, Truth};
+use super::chain::Chain;
 use crate::assembly::System;
-use crate::linalg::LinearOperator;
-use crate::sampling::{AliasRows, Stream, Streams};
+use crate::sampling::{Stream, Streams};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -35,9 +36,6 @@ const LAST_EVENT_LIMIT: f64 = 0.9;
 
 /// Walks that one thread moves in turns: hides the time that memory takes to deliver a slot of a large matrix.
 const N_ABREAST: usize = 16;
-
-/// A bundle loses light to sinks where its row of G lacks more than this: what closure leaves open.
-const CLOSURE_TOLERANCE: f64 = 1e-12;
 
 /// When a walk scores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -52,6 +50,7 @@ pub enum Scoring {
 #[derive(Clone, Debug)]
 pub struct MatrixWalk {
     scoring: Scoring,
+    columns: Columns,
     chain: Arc<Chain>,
     /// n × (1 + 3 bands), row by row: p, then a / p, v and u of every band.
     bundles: Vec<f64>,
@@ -61,20 +60,13 @@ pub struct MatrixWalk {
 struct Walk {
     bundle: usize,
     is_inside: bool,
+    /// Steps taken.
+    bounce: usize,
     stream: Stream,
     /// Chooses the next step.
     uniform: f64,
     weights: Bands,
     totals: Bands,
-}
-
-/// What walks of either scoring share.
-#[derive(Debug)]
-struct Chain {
-    n_bands: usize,
-    steps: AliasRows,
-    /// n × (1 + 2 bands), row by row: p, then a / p and E of every band.
-    bundles: Vec<f64>,
 }
 
 impl MatrixWalk {
@@ -94,7 +86,12 @@ impl MatrixWalk {
 
     /// The same walks scored otherwise, on the same tables: nothing of size n² is copied.
     pub fn with_scoring(&self, scoring: Scoring) -> Self {
-        Self::over(self.chain.clone(), scoring)
+        Self { columns: self.columns, ..Self::over(self.chain.clone(), scoring) }
+    }
+
+    /// The same walks, scored for these bounces.
+    pub fn with_bounces(self, bounces: Bounces) -> Self {
+        Self { columns: Columns { bounces, ..self.columns }, ..self }
     }
 
     pub fn scoring(&self) -> Scoring {
@@ -118,7 +115,8 @@ impl MatrixWalk {
             bundles.extend(emission.iter().map(|e| if at_end { 0.0 } else { *e }));
             bundles.extend(emission.iter().map(|e| if at_end { e / (1.0 - survival) } else { 0.0 }));
         }
-        Self { scoring, chain, bundles }
+        let columns = Columns { n_bands, bounces: Bounces::All };
+        Self { scoring, columns, chain, bundles }
     }
 }
 
@@ -138,12 +136,12 @@ impl Estimator for MatrixWalk {
         self.chain.steps.n_rows()
     }
 
-    fn n_bands(&self) -> usize {
-        self.chain.n_bands
+    fn n_columns(&self) -> usize {
+        self.columns.count()
     }
 
     fn sample(&self, start: usize, stream: &mut Stream, score: &mut Score) {
-        let mut walk = Walk::new(start, stream.clone(), self.chain.n_bands);
+        let mut walk = Walk::new(start, stream.clone(), self.columns);
         while walk.is_inside && self.visit(&mut walk) {
             self.step(&mut walk);
         }
@@ -152,8 +150,7 @@ impl Estimator for MatrixWalk {
     }
 
     fn samples(&self, start: usize, numbers: Range<u64>, streams: &Streams, score: &mut Score) {
-        let mut waiting =
-            numbers.map(|number| Walk::new(start, streams.stream(start as u32, number), self.chain.n_bands));
+        let mut waiting = numbers.map(|number| Walk::new(start, streams.stream(start as u32, number), self.columns));
         let mut walks: Vec<Walk> = waiting.by_ref().take(N_ABREAST).collect();
         while !walks.is_empty() {
             // Score every walk, and put a new one in the place of each that ends.
@@ -186,12 +183,14 @@ impl MatrixWalk {
         let (survival, row) = (row[0], &row[1..]);
         let (gain, row) = row.split_at(n_bands);
         let (at_visit, at_end) = row.split_at(n_bands);
-        add(&mut walk.totals, &walk.weights, at_visit);
+        let Some(here) = self.columns.of(walk.bounce) else { return false };
+        let totals = &mut walk.totals[here];
+        add(totals, &walk.weights, at_visit);
 
         // Absorb it with probability 1 − p; below p, the number over p is uniform again.
         let uniform = walk.stream.uniform();
         if uniform >= survival {
-            add(&mut walk.totals, &walk.weights, at_end);
+            add(totals, &walk.weights, at_end);
             return false;
         }
         walk.uniform = uniform / survival;
@@ -203,16 +202,16 @@ impl MatrixWalk {
     #[inline]
     fn step(&self, walk: &mut Walk) {
         match self.chain.steps.sample(walk.bundle, walk.uniform) {
-            Some(next) => walk.bundle = next,
+            Some(next) => (walk.bundle, walk.bounce) = (next, walk.bounce + 1),
             None => walk.is_inside = false,
         }
     }
 }
 
 impl Walk {
-    fn new(start: usize, stream: Stream, n_bands: usize) -> Self {
-        let (weights, totals) = (Bands::all(1.0, n_bands), Bands::all(0.0, n_bands));
-        Self { bundle: start, is_inside: true, stream, uniform: 0.0, weights, totals }
+    fn new(start: usize, stream: Stream, columns: Columns) -> Self {
+        let (weights, totals) = (Bands::all(1.0, columns.n_bands), Bands::all(0.0, columns.count()));
+        Self { bundle: start, is_inside: true, bounce: 0, stream, uniform: 0.0, weights, totals }
     }
 }
 
@@ -221,47 +220,5 @@ impl Walk {
 fn add(totals: &mut [f64], weights: &[f64], values: &[f64]) {
     for ((total, weight), value) in totals.iter_mut().zip(weights).zip(values) {
         *total += weight * value;
-    }
-}
-
-impl Chain {
-    fn new(system: &System) -> Result<Self, EstimatorError> {
-        let (n, n_bands) = (system.n_bundles(), system.n_bands());
-        let albedo = system.transport().scattering().values();
-        let survival: Vec<f64> = (0..n).map(|i| albedo.row(i).fold(0.0, f64::max)).collect();
-        check_walks_end(system, &survival)?;
-
-        // Write out p, a / p and E bundle by bundle.
-        let mut bundles = Vec::with_capacity(n * (1 + 2 * n_bands));
-        for (i, &p) in survival.iter().enumerate() {
-            bundles.push(p);
-            bundles.extend(albedo.row(i).map(|a| if p > 0.0 { a / p } else { 0.0 }));
-            bundles.extend(system.emission().row(i));
-        }
-        let propagation = system.transport().propagation();
-        let steps = AliasRows::new(n, n, |i, row| propagation.row(0, i, row)).map_err(EstimatorError::Propagation)?;
-        Ok(Self { n_bands, steps, bundles })
-    }
-}
-
-/// Every bundle must be able to reach one where walks end. Light goes both ways (T = Tᵀ), so search back from those.
-fn check_walks_end(system: &System, survival: &[f64]) -> Result<(), EstimatorError> {
-    let ends_walks = |i: usize| {
-        let lost: f64 = system.sinks().row(i).sum();
-        survival[i] < 1.0 || lost > CLOSURE_TOLERANCE * system.etendue()[i]
-    };
-    let mut ends: Vec<bool> = (0..survival.len()).map(ends_walks).collect();
-    let mut frontier: Vec<usize> = (0..survival.len()).filter(|i| ends[*i]).collect();
-    while let Some(i) = frontier.pop() {
-        system.exchange().for_each_in_row(i, |j, exchange| {
-            if exchange > 0.0 && !ends[j] {
-                ends[j] = true;
-                frontier.push(j);
-            }
-        });
-    }
-    match ends.iter().position(|ends| !ends) {
-        None => Ok(()),
-        Some(bundle) => Err(EstimatorError::NeverEnds { bundle }),
     }
 }
