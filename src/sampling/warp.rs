@@ -11,6 +11,20 @@ pub fn disk(uniform: [f64; 2]) -> [f64; 2] {
     [radius * angle.cos(), radius * angle.sin()]
 }
 
+/// The numbers that [`disk`] warps to a point of the unit disk, to rounding.
+pub fn disk_inverse(point: [f64; 2]) -> [f64; 2] {
+    let [x, y] = point;
+    let radius = x.hypot(y);
+    let (a, b) = if x.abs() > y.abs() {
+        (radius.copysign(x), radius.copysign(x) * ((y / x).atan() / FRAC_PI_4))
+    } else if y != 0.0 {
+        (radius.copysign(y) * ((x / y).atan() / FRAC_PI_4), radius.copysign(y))
+    } else {
+        (0.0, 0.0)
+    };
+    [0.5 * (a + 1.0), 0.5 * (b + 1.0)]
+}
+
 /// 1/π inside the unit disk.
 pub fn disk_pdf(point: [f64; 2]) -> f64 {
     if point[0] * point[0] + point[1] * point[1] <= 1.0 { FRAC_1_PI } else { 0.0 }

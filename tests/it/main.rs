@@ -9,6 +9,7 @@ mod cli;
 mod closure;
 mod compare;
 mod defects;
+mod directions;
 mod enclosure;
 mod equations;
 mod estimator;
