@@ -13,6 +13,9 @@ use std::f64::consts::TAU;
 /// Rounding of a height over a plane through an edge and a point, relative to the lengths in it: a few ulp.
 const FLAT: f64 = 4e-15;
 
+/// Rounding of a point where bodies touch, relative to its coordinates: an ulp on either side.
+const TOUCH: f64 = 2.0 * f64::EPSILON;
+
 /// Sine of an angle between an edge and a plane in which it is to lie.
 const COPLANAR: f64 = 1e-9;
 
@@ -65,7 +68,8 @@ impl Edge {
         let reach = eyes.iter().map(|x| x.distance_squared(self.from)).fold(0.0, f64::max);
         for y in points {
             let slope = self.height_of(*y);
-            let flat = FLAT * (length * reach * y.distance_squared(self.from)).sqrt();
+            let grain = FLAT * y.distance(self.from) + TOUCH * y.abs().max(self.from.abs()).max_element();
+            let flat = grain * (length * reach).sqrt();
             for x in eyes {
                 let height = slope.dot(*x - self.from);
                 above |= height > flat;
