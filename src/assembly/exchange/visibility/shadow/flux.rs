@@ -51,6 +51,27 @@ impl Edge {
         normal.dot(along).abs() <= COPLANAR * normal.length() * along.length()
     }
 
+    /// Where it meets another one of its plane, if both do so in an inner point or an end.
+    pub fn crossing(&self, other: &Self) -> Option<Vec3> {
+        let (side, along) = (self.to - self.from, other.to - other.from);
+        let turn = side.cross(along);
+        if turn.length() <= COPLANAR * side.length() * along.length() {
+            return None;
+        }
+        let share = (other.from - self.from).cross(along).dot(turn) / turn.length_squared();
+        let point = self.from + share * side;
+        let is_within = |share: f64| (-COPLANAR..=1.0 + COPLANAR).contains(&share);
+        (is_within(share) && is_within((point - other.from).dot(along) / along.length_squared())).then_some(point)
+    }
+
+    /// True if a point lies in its line within rounding.
+    pub fn touches(&self, point: Vec3) -> bool {
+        let grain = TOUCH * point.abs().max(self.from.abs()).max(self.to.abs()).max_element();
+        let side = self.to - self.from;
+        let flat = FLAT * point.distance(self.from) + 2.0 * grain;
+        self.height_of(point).length_squared() <= flat * flat * side.length_squared()
+    }
+
     /// On which side these points lie, seen from anywhere in the hull of `eyes`: above is hidden.
     pub fn lie(&self, eyes: &[Vec3], points: &[Vec3]) -> Lie {
         match self.sides(eyes, points) {
