@@ -44,8 +44,11 @@ pub struct Cell {
     value: f64,
     /// By how much the error falls from a rule of n to one of n + 1 points an axis.
     decay: f64,
-    /// Error of the last rule, were the constants one.
+    /// Error of the last rule, were the constants one, and of the one before it.
     envelope: f64,
+    before: f64,
+    /// So many points an axis it had less.
+    steps: i32,
     change: f64,
     error: f64,
 }
@@ -54,7 +57,19 @@ impl Cell {
     /// A cell not yet looked at.
     pub fn new(corners: [Vec3; 4], term: usize) -> Self {
         let nature = Nature::Rough;
-        Self { corners, term, nature, rung: 0, value: 0.0, decay: SLOWEST, envelope: 0.0, change: 0.0, error: 0.0 }
+        Self {
+            corners,
+            term,
+            nature,
+            rung: 0,
+            value: 0.0,
+            decay: SLOWEST,
+            envelope: 0.0,
+            before: 0.0,
+            steps: 0,
+            change: 0.0,
+            error: 0.0,
+        }
     }
 
     /// The first two rules; a third where kinks can hide from them.
@@ -103,7 +118,12 @@ impl Cell {
         if rung == 1 {
             self.envelope = spread * self.decay.sqrt();
         }
-        self.envelope = change.max(self.envelope) * self.decay.max(FIRST[rung.min(FIRST.len() - 1)]).powi(steps);
+        // Where the rate that was seen is slower than the one expected, it is the better judge.
+        let before = change.max(self.envelope);
+        let seen = if rung == 1 { 0.0 } else { (change / self.before).powf(1.0 / f64::from(self.steps)) };
+        let decay = self.decay.max(FIRST[rung.min(FIRST.len() - 1)]).max(seen.min(SLOWEST));
+        self.envelope = before * decay.powi(steps);
+        (self.before, self.steps) = (before, steps);
         self.error = match self.nature {
             _ if self.decay < SLOWEST => CAUTION * self.envelope,
             Nature::Kinked(_) => ACROSS * change.max(0.5 * self.change),
