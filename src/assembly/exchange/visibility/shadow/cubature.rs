@@ -26,6 +26,9 @@ const DOUBT: f64 = 16.0;
 /// What takes the place of doubt where the kinks are known.
 const ACROSS: f64 = 4.0;
 
+/// So far away from an apex, as a share of the way, it shows where kinks leave it.
+const AWAY: f64 = 1e-6;
+
 /// Share of the largest difference of values that a rule of one point may be off by about a singularity.
 const UNTOLD: f64 = 0.1;
 
@@ -184,7 +187,8 @@ impl Cell {
         let (mut sum, mut area) = (0.0, 0.0);
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         // Kinks leave or enter the lines across at the ends of panels.
-        let panels = Panels::between(integrand, &kinks, &[[a, d], [b, c]]);
+        let near = if a == d { [a + AWAY * (b - a), a + AWAY * (c - a)] } else { [a, d] };
+        let panels = Panels::between(integrand, &kinks, &[near, [b, c]]);
         for (t, wt) in panels.points(rule) {
             let (start, end) = (a + t * (d - a), b + t * (c - b));
             let slope = (1.0 - t) * (b - a) + t * (c - d);
