@@ -26,6 +26,9 @@ const DOUBT: f64 = 16.0;
 /// What takes the place of doubt where the kinks are known.
 const ACROSS: f64 = 4.0;
 
+/// So far away from an apex, as a share of the way, it shows where kinks leave it.
+const AWAY: f64 = 1e-6;
+
 /// Share of the largest difference of values that a rule of one point may be off by about a singularity.
 const UNTOLD: f64 = 0.1;
 
@@ -44,8 +47,11 @@ pub struct Cell {
     value: f64,
     /// By how much the error falls from a rule of n to one of n + 1 points an axis.
     decay: f64,
-    /// Error of the last rule, were the constants one.
+    /// Error of the last rule, were the constants one, and of the one before it.
     envelope: f64,
+    before: f64,
+    /// So many points an axis it had less.
+    steps: i32,
     change: f64,
     error: f64,
 }
@@ -54,7 +60,19 @@ impl Cell {
     /// A cell not yet looked at.
     pub fn new(corners: [Vec3; 4], term: usize) -> Self {
         let nature = Nature::Rough;
-        Self { corners, term, nature, rung: 0, value: 0.0, decay: SLOWEST, envelope: 0.0, change: 0.0, error: 0.0 }
+        Self {
+            corners,
+            term,
+            nature,
+            rung: 0,
+            value: 0.0,
+            decay: SLOWEST,
+            envelope: 0.0,
+            before: 0.0,
+            steps: 0,
+            change: 0.0,
+            error: 0.0,
+        }
     }
 
     /// The first two rules; a third where kinks can hide from them.
@@ -103,7 +121,12 @@ impl Cell {
         if rung == 1 {
             self.envelope = spread * self.decay.sqrt();
         }
-        self.envelope = change.max(self.envelope) * self.decay.max(FIRST[rung.min(FIRST.len() - 1)]).powi(steps);
+        // Where the rate that was seen is slower than the one expected, it is the better judge.
+        let before = change.max(self.envelope);
+        let seen = if rung == 1 { 0.0 } else { (change / self.before).powf(1.0 / f64::from(self.steps)) };
+        let decay = self.decay.max(FIRST[rung.min(FIRST.len() - 1)]).max(seen.min(SLOWEST));
+        self.envelope = before * decay.powi(steps);
+        (self.before, self.steps) = (before, steps);
         self.error = match self.nature {
             _ if self.decay < SLOWEST => CAUTION * self.envelope,
             Nature::Kinked(_) => ACROSS * change.max(0.5 * self.change),
@@ -164,7 +187,8 @@ impl Cell {
         let (mut sum, mut area) = (0.0, 0.0);
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         // Kinks leave or enter the lines across at the ends of panels.
-        let panels = Panels::between(integrand, &kinks, &[[a, d], [b, c]]);
+        let near = if a == d { [a + AWAY * (b - a), a + AWAY * (c - a)] } else { [a, d] };
+        let panels = Panels::between(integrand, &kinks, &[near, [b, c]]);
         for (t, wt) in panels.points(rule) {
             let (start, end) = (a + t * (d - a), b + t * (c - b));
             let slope = (1.0 - t) * (b - a) + t * (c - d);
