@@ -1,7 +1,7 @@
 //! Welch's test: do two samples of unequal variance have the same mean?
 
 use super::Moments;
-use super::special::regularised_incomplete_beta;
+use super::student_tail;
 
 /// The outcome of the test.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,7 +14,12 @@ pub struct TTest {
     pub p_value: f64,
 }
 
-/// Tests whether two independent samples have the same mean. All NaN where either has fewer than two numbers; where neither varies, the
+/// Tests whether two independent samples have the same mean, their variances being unknown and perhaps unequal.
+///
+/// Exact to a few per cent of the p-value for normal numbers, from five of each on. Others are normal in the mean only: a sample of
+/// skewness γ moves a p-value by about γ (2t² + 1) / 6√n times the density at t, which in a far tail is a factor of exp(γ t³ / 3√n).
+///
+/// All NaN where either has fewer than two numbers; where neither varies, the
 /// p-value is 1 for equal means and 0 for others.
 pub fn welch_test(a: &Moments, b: &Moments) -> TTest {
     let (va, vb) = (a.variance_of_mean(), b.variance_of_mean());
@@ -32,6 +37,5 @@ pub fn welch_test(a: &Moments, b: &Moments) -> TTest {
     if t.is_nan() {
         return TTest { t, n_degrees_of_freedom: f64::NAN, p_value: f64::NAN };
     }
-    let x = n_degrees_of_freedom / (n_degrees_of_freedom + t * t);
-    TTest { t, n_degrees_of_freedom, p_value: regularised_incomplete_beta(0.5 * n_degrees_of_freedom, 0.5, x) }
+    TTest { t, n_degrees_of_freedom, p_value: 2.0 * student_tail(t.abs(), n_degrees_of_freedom) }
 }

@@ -1,11 +1,12 @@
 //! Norms, verdicts and rates.
 
 use etendue::compare::{
-    Level, ROUNDING_TOLERANCE, RatesError, compare_blocks, observed_order, relative_max, relative_rms, richardson,
+    Level, ROUNDING_TOLERANCE, RatesError, compare_blocks, observed_order, pooled, relative_max, relative_rms,
+    richardson,
 };
 use etendue::linalg::Block;
 use etendue::sampling::Streams;
-use etendue::stats::Moments;
+use etendue::stats::{Moments, binomial_tail};
 
 #[test]
 fn norms_weigh_as_they_say() {
@@ -109,6 +110,52 @@ fn rounding_in_a_variance_is_no_disagreement() {
     mean.set(4, 0, reference().get(4, 0) * (1.0 + 4.0 * f64::EPSILON));
     variance.set(4, 0, 1e-36);
     assert!(compare_blocks(&reference(), &mean, &variance, 1e-6).agrees);
+}
+
+/// Light that arrives late is dim everywhere: the eighth bounce of a lamp of radiance 1 may have a reference of 1e-4 in every bundle. The largest
+/// of them is no bound of a score, which is 1 when it comes, once in 10⁴ samples.
+#[test]
+fn late_bounces_are_pooled_until_they_score() {
+    let (n_bundles, n_samples, chance) = (60, 100_000, 1e-4);
+    let reference = Block::from_fn(n_bundles, 1, |_, _| chance);
+    let weights = vec![0.5; n_bundles];
+    let mut n_failures = 0;
+    for experiment in 0..2000 {
+        let mut stream = Streams::new(79, "late bounces").stream(experiment, 0);
+        // Scores are so rare that their number is Poisson's: the gaps between them are exponential.
+        let hits = Block::from_fn(n_bundles, 1, |_, _| {
+            let mut left = chance * n_samples as f64 + (1.0 - stream.uniform()).ln();
+            let mut n_hits = 0.0;
+            while left > 0.0 {
+                n_hits += 1.0;
+                left += (1.0 - stream.uniform()).ln();
+            }
+            n_hits
+        });
+        let n = n_samples as f64;
+        let mean = Block::from_fn(n_bundles, 1, |r, _| hits.get(r, 0) / n);
+        let variance = Block::from_fn(n_bundles, 1, |r, _| hits.get(r, 0) / n * (1.0 - hits.get(r, 0) / n) / (n - 1.0));
+        let [expected, mean, variance] = pooled(&reference, &mean, &variance, &weights, n_samples, &[1.0]);
+        // Ten scores a bundle: 40 bundles make the first comparison, and the others join it.
+        assert_eq!(expected.n_rows(), 1);
+        n_failures += u64::from(!compare_blocks(&expected, &mean, &variance, 1e-3).agrees);
+    }
+    // At 600 scores a true alarm rate of 1.2e-3, by Poisson's terms.
+    assert!(binomial_tail(n_failures, 2000, 1.2e-3) > 1e-6, "{n_failures} false alarms of 2000");
+}
+
+#[test]
+fn unequal_weights_pool_by_their_skewness() {
+    // One bundle of weight 10 drowns the others: its 100 scores alone make the sum as skewed as 103 scores would.
+    let reference = Block::from_fn(50, 1, |_, _| 1.0);
+    let weights: Vec<f64> = (0..50).map(|r| if r == 0 { 10.0 } else { 0.1 }).collect();
+    assert_eq!(pooled(&reference, &reference, &reference, &weights, 100, &[1.0])[0].n_rows(), 0);
+    assert_eq!(pooled(&reference, &reference, &reference, &[0.1; 50], 100, &[1.0])[0].n_rows(), 12);
+    // Bundles without weight or without light take part in nothing.
+    let dark = Block::from_fn(50, 1, |r, _| f64::from(u8::from(r % 2 == 0)));
+    assert_eq!(pooled(&dark, &dark, &dark, &[0.1; 50], 100, &[1.0])[0].n_rows(), 6);
+    assert_eq!(pooled(&dark, &dark, &dark, &[0.0; 50], 100, &[1.0])[0].n_rows(), 0);
+    assert_eq!(pooled(&Block::zeros(50, 1), &dark, &dark, &[1.0; 50], 100, &[0.0])[0].n_rows(), 0);
 }
 
 #[test]

@@ -37,5 +37,6 @@ mod solvers;
 mod spectrum;
 mod sphere;
 mod stats;
+mod tails;
 mod threads;
 mod tracing;
