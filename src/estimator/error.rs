@@ -1,6 +1,5 @@
 //! Why an equation or a scene cannot be sampled.
 
-use super::Roulette;
 use crate::sampling::AliasError;
 use thiserror::Error;
 
@@ -17,6 +16,6 @@ pub enum EstimatorError {
     NotAPatch { element: usize },
     #[error("element {element} lies on facet {facet}, but the scene has {n_facets}: the bundles are another scene's")]
     ForeignBundles { element: usize, facet: usize, n_facets: usize },
-    #[error("{roulette:?} is no probability of survival, which must be above 0 and at most 1")]
-    Roulette { roulette: Roulette },
+    #[error("the probability that paths go on is {survival:e}, must be above 0 and at most 1")]
+    Survival { survival: f64 },
 }

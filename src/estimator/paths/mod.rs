@@ -2,6 +2,7 @@
 
 mod emitters;
 mod heuristic;
+mod light_tracer;
 mod path_tracer;
 mod reflection;
 mod roulette;
@@ -9,5 +10,6 @@ mod stage;
 mod white;
 
 pub use heuristic::Heuristic;
+pub use light_tracer::LightTracer;
 pub use path_tracer::{PathTracer, Sampling};
 pub use roulette::Roulette;

@@ -77,7 +77,7 @@ impl<'a> PathTracer<'a> {
     /// # Errors
     /// A survival probability outside (0, 1].
     pub fn with_roulette(self, roulette: Roulette) -> Result<Self, EstimatorError> {
-        if roulette.is_valid() { Ok(Self { roulette, ..self }) } else { Err(EstimatorError::Roulette { roulette }) }
+        roulette.checked().map(|roulette| Self { roulette, ..self })
     }
 
     /// The same paths, scored for these bounces.
@@ -101,10 +101,7 @@ impl<'a> PathTracer<'a> {
         let (stage, columns) = (&self.stage, self.columns);
         let patch = stage.patches[start];
         let Some(emitted) = columns.of(0) else { return 0 };
-        if patch.side == Side::Front {
-            let emission = &stage.scene.surface_of(patch.facet).emission;
-            add(&mut score.totals(start)[emitted], emission, 1.0);
-        }
+        add(&mut score.totals(start)[emitted], stage.emission(patch.facet, patch.side), 1.0);
         let Some(mut vertex) = stage.leave(patch, stream) else { return 0 };
         let mut throughput = Bands::all(1.0, columns.n_bands);
         let mut n_rays = 0;

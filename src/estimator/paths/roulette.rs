@@ -1,5 +1,7 @@
 //! Whether a path goes on.
 
+use super::super::EstimatorError;
+
 /// Ends paths at random without a bias: with a survival probability q, what survives is weighed up by 1/q.
 ///
 /// Throughput is the product of f cosθ / density along the path, the largest over the bands; it is the product of albedos on diffuse
@@ -17,11 +19,11 @@ pub enum Roulette {
 }
 
 impl Roulette {
-    /// True for a probability that lets paths go on and leaves them unbiased.
-    pub(super) fn is_valid(self) -> bool {
+    /// Refuses what is no probability, or lets no path go on.
+    pub(super) fn checked(self) -> Result<Self, EstimatorError> {
         match self {
-            Self::Throughput | Self::After(_) => true,
-            Self::Constant(survival) => survival > 0.0 && survival <= 1.0,
+            Self::Constant(survival) if !(survival > 0.0 && survival <= 1.0) => Err(EstimatorError::Survival { survival }),
+            _ => Ok(self),
         }
     }
 

@@ -1,7 +1,7 @@
 //! The scene as paths see it.
 
 use super::super::EstimatorError;
-use super::emitters::Emitters;
+use super::emitters::{Emitter, Emitters};
 use super::reflection::Reflection;
 use super::white;
 use crate::basis::{Bundles, Patch};
@@ -90,6 +90,14 @@ impl<'a> Stage<'a> {
         Some(Vertex { facet: patch.facet, side: patch.side, position, frame: &face.frame, reflection, given })
     }
 
+    /// Where light starts: uniform on an emitter, with density cosθ/π. The direction is the world's.
+    #[inline]
+    pub fn emit<'e>(&self, emitter: &'e Emitter<'a>, stream: &mut Stream) -> (&'e Emitter<'a>, Vec3, Vec3) {
+        let position = emitter.polygon.sample(stream.uniform2());
+        let direction = Vec3::from(warp::cosine_hemisphere(stream.uniform2()));
+        (emitter, position, self.face(emitter.facet, Side::Front).frame.to_world(direction))
+    }
+
     /// Follows a ray from a point of a facet to the first surface; `None` where it leaves the scene.
     #[inline]
     pub fn follow(&self, facet: usize, position: Vec3, direction: Vec3) -> Option<Arrival> {
@@ -107,6 +115,22 @@ impl<'a> Stage<'a> {
         let face = self.face(facet, side);
         let reflection = face.reflection.as_ref()?;
         Some(Vertex { facet, side, position, frame: &face.frame, reflection, given })
+    }
+
+    /// The bundle that light leaving a vertex belongs to.
+    #[inline]
+    pub fn locate(&self, vertex: &Vertex<'_>) -> Option<usize> {
+        let direction = vertex.frame.to_world(vertex.given);
+        self.bundles.locate(vertex.facet, vertex.side, vertex.position, direction)
+    }
+
+    /// Radiance emitted by a side, one value a band; empty where it is dark.
+    #[inline]
+    pub fn emission(&self, facet: usize, side: Side) -> &'a [f64] {
+        match side {
+            Side::Front => &self.scene.surface_of(facet).emission,
+            Side::Back => &[],
+        }
     }
 
     #[inline]
