@@ -122,14 +122,16 @@ fn csv_brings_every_number_back() {
     let same = |field: &str, value: f64| field.parse::<f64>().unwrap().to_bits() == value.to_bits();
 
     let table = rows(text(&files, "convergence.csv"));
-    assert_eq!(table[0], ["solver", "iteration", "products", "residual", "error"]);
+    assert_eq!(table[0], ["solver", "iteration", "products", "seconds", "residual", "error", "predicted_error"]);
     let points = outcome.solvers.iter().flat_map(|run| run.history.iter().map(move |p| (&run.solver, p)));
     assert_eq!(table.len() - 1, points.clone().count());
     for (row, (solver, p)) in table[1..].iter().zip(points) {
         assert!(
-            row[0] == solver && same(row[2], p.products) && same(row[3], p.residual) && same(row[4], p.error),
+            row[0] == solver && same(row[2], p.products) && same(row[3], p.seconds) && same(row[4], p.residual),
             "{row:?}"
         );
+        assert!(same(row[5], p.error) && row[6].is_empty() == p.predicted.is_none(), "{row:?}");
+        assert!(p.predicted.is_none_or(|predicted| same(row[6], predicted)), "{row:?}");
     }
     for (row, t) in rows(text(&files, "truncation.csv"))[1..].iter().zip(&outcome.truncation) {
         assert!(row[0] == t.bounces.to_string() && same(row[1], t.error) && same(row[2], t.bound), "{row:?}");
@@ -198,7 +200,9 @@ fn no_number_breaks_a_figure() {
         outcome.pictures = None;
         for run in &mut outcome.solvers {
             for (i, p) in run.history.iter_mut().enumerate() {
-                *p = HistoryPoint { products: pick(i), residual: pick(i + 1), error: pick(i + 2) };
+                let predicted = (i % 2 == 0).then(|| pick(i + 4));
+                let (products, seconds, residual, error) = (pick(i), pick(i + 3), pick(i + 1), pick(i + 2));
+                *p = HistoryPoint { products, seconds, residual, error, predicted };
             }
             (run.error, run.seconds, run.products, run.error_bound) = (pick(0), pick(1), pick(2), Some(pick(3)));
         }

@@ -12,6 +12,8 @@ const MOST_LABELS: i32 = 9;
 #[derive(Clone, Debug)]
 pub struct Axis {
     logarithmic: bool,
+    /// Whether numbers fall along the axis.
+    reversed: bool,
     /// In the drawn coordinate: the number itself or its decimal logarithm.
     low: f64,
     high: f64,
@@ -44,7 +46,7 @@ impl Axis {
         let step = nice_step(high / 6.0);
         let labels = (0..=(high / step + 1e-9).floor() as u32).map(|k| f64::from(k) * step);
         let labels = labels.map(|v| (v, if step >= 1.0 { count(v as u64) } else { significant(v, 2) })).collect();
-        Self { logarithmic: false, low: 0.0, high: 1.03 * high, labels, ticks: Vec::new() }
+        Self { logarithmic: false, reversed: false, low: 0.0, high: 1.03 * high, labels, ticks: Vec::new() }
     }
 
     /// Between two numbers of either sign, marked at multiples of 1, 2 or 5.
@@ -53,7 +55,7 @@ impl Axis {
         let multiples = (low / step).ceil() as i64..=(high / step).floor() as i64;
         let name = |v: f64| if v < 0.0 { format!("−{}", significant(-v, 2)) } else { significant(v, 2) };
         let labels = multiples.map(|k| k as f64 * step).map(|v| (v, name(v))).collect();
-        Self { logarithmic: false, low, high, labels, ticks: Vec::new() }
+        Self { logarithmic: false, reversed: false, low, high, labels, ticks: Vec::new() }
     }
 
     fn log_between(low: f64, high: f64) -> Self {
@@ -85,12 +87,23 @@ impl Axis {
             labels.extend(digits.filter(inside).map(|v| (v, if plain { significant(v, 1) } else { scientific(v, 1) })));
             labels.sort_by(|a, b| a.0.total_cmp(&b.0));
         }
-        Self { logarithmic: true, low, high, labels, ticks }
+        Self { logarithmic: true, reversed: false, low, high, labels, ticks }
     }
 
     /// Marks these numbers, and no others.
     pub fn with_labels(self, labels: Vec<(f64, String)>) -> Self {
         Self { labels, ticks: Vec::new(), ..self }
+    }
+
+    /// A logarithmic axis that ends at this number, which must be above where it begins.
+    pub fn up_to(self, high: f64) -> Self {
+        let (low, high) = (self.low, high.log10());
+        if high > low && high.is_finite() { Self::log_between(low, high) } else { self }
+    }
+
+    /// The same, the largest number first.
+    pub fn reversed(self) -> Self {
+        Self { reversed: !self.reversed, ..self }
     }
 
     /// Where `value` lies between the two ends, 0 to 1; clamped there. `None` for NaN and infinities.
@@ -99,10 +112,11 @@ impl Axis {
             return None;
         }
         let drawn = if self.logarithmic { value.max(1e-300).log10() } else { value };
-        Some(((drawn - self.low) / (self.high - self.low)).clamp(0.0, 1.0))
+        let fraction = ((drawn - self.low) / (self.high - self.low)).clamp(0.0, 1.0);
+        Some(if self.reversed { 1.0 - fraction } else { fraction })
     }
 
-    /// The two ends.
+    /// The two ends, the smaller first.
     pub fn ends(&self) -> (f64, f64) {
         if self.logarithmic { (10_f64.powf(self.low), 10_f64.powf(self.high)) } else { (self.low, self.high) }
     }

@@ -41,6 +41,7 @@ fn the_object_has_every_field_in_its_shape() {
             "laws",
             "exchange",
             "report",
+            "duality",
             "notes",
             "provenance",
         ],
@@ -73,6 +74,8 @@ fn the_object_has_every_field_in_its_shape() {
     assert_fields(&object["report"], &[&counts[..], &rest].concat());
     assert!(counts.iter().all(|count| object["report"][count].is_u64()));
     assert_eq!((&object["report"]["solver"], &object["report"]["stop"]), (&json!("cg"), &json!("converged")));
+    let dual = ["sensor", "unit", "solver", "reading", "dual_reading", "difference", "stop", "products", "seconds"];
+    assert_fields(&object["duality"], &dual);
     assert_fields(
         &object["provenance"],
         &["version", "command", "scene", "scene_hash", "patch_size", "n_directions", "seed", "settings"],
