@@ -26,6 +26,9 @@ const DOUBT: f64 = 16.0;
 /// What takes the place of doubt where the kinks are known.
 const ACROSS: f64 = 4.0;
 
+/// Along an axis on which the error falls faster than this with every point, cells are not cut.
+const EASY: f64 = 0.15;
+
 /// So far away from an apex, as a share of the way, it shows where kinks leave it.
 const AWAY: f64 = 1e-6;
 
@@ -79,10 +82,7 @@ impl Cell {
     fn begin(&mut self, integrand: &mut Integrand) {
         self.nature = integrand.nature(self.term, &self.corners);
         match self.nature {
-            // Gauss rules converge as ρ^(−2n), ρ the sum of the axes of the ellipse about ±1 that reaches the singularity.
-            Nature::Smooth { reach } if reach > 1.0 => {
-                self.decay = (reach - (reach * reach - 1.0).sqrt()).powi(2).min(SLOWEST);
-            }
+            Nature::Smooth { decays: [one, other] } => self.decay = one.max(other).min(SLOWEST),
             Nature::Kinked(_) => self.lie_across(integrand),
             _ => {}
         }
@@ -132,7 +132,7 @@ impl Cell {
             Nature::Kinked(_) => ACROSS * change.max(0.5 * self.change),
             _ => DOUBT * change.max(0.5 * self.change),
         };
-        if matches!(self.nature, Nature::Smooth { reach } if reach <= 1.0) {
+        if self.decay == SLOWEST && matches!(self.nature, Nature::Smooth { .. }) {
             // Parts of a singularity look like the whole: where rules agree by luck on one of them they do on all.
             self.error = self.error.max(UNTOLD * spread / (LADDER[rung] * LADDER[rung]) as f64);
         }
@@ -211,11 +211,17 @@ impl Cell {
         }
     }
 
-    fn quarters(&self) -> [[Vec3; 4]; 4] {
+    /// What to go on with instead: quarters, or halves where singularities are across one axis alone.
+    fn parts(&self) -> impl Iterator<Item = [Vec3; 4]> {
         let [a, b, c, d] = self.corners;
         let (ab, bc, cd, da) = (0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + d), 0.5 * (d + a));
         let middle = 0.5 * (ab + cd);
-        [[a, ab, middle, da], [ab, b, bc, middle], [middle, bc, c, cd], [da, middle, cd, d]]
+        let parts = match self.nature {
+            Nature::Smooth { decays: [one, other] } if other < EASY.min(one) => vec![[a, ab, cd, d], [ab, b, c, cd]],
+            Nature::Smooth { decays: [one, other] } if one < EASY.min(other) => vec![[a, b, bc, da], [da, bc, c, d]],
+            _ => vec![[a, ab, middle, da], [ab, b, bc, middle], [middle, bc, c, cd], [da, middle, cd, d]],
+        };
+        parts.into_iter()
     }
 }
 
@@ -281,7 +287,7 @@ pub fn integrate(cells: &mut Vec<Cell>, tolerance: f64, integrand: &mut Integran
             }
             if cells[k].wants_quarters() {
                 let cell = cells.swap_remove(k);
-                for corners in cell.quarters() {
+                for corners in cell.parts() {
                     let mut part = Cell::new(corners, cell.term);
                     part.begin(integrand);
                     cells.push(part);
