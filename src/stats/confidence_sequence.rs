@@ -16,8 +16,8 @@ use thiserror::Error;
 ///
 /// Exact for normal numbers of known variance s², from n₀ = 1 on. With the sample's own variance it is asymptotic in n₀ (Waudby-Smith,
 /// Arbour, Sinha, Kennedy & Ramdas 2024): nothing is claimed before `first`, and what is claimed from there on is as good as the normal
-/// approximation is at `first`. Of exponential numbers at α = 0.05, 5.2 % of all runs are missed from n₀ = 100 on, so far out does the
-/// mixture err on the safe side; scores that hit once in N need `first` ≫ N.
+/// approximation is at `first`. Measured on exponential numbers at α = 0.05: 5.0 % of runs are missed at some time between the 100th
+/// number and the 30 000th, 2.8 % from the 1000th on. Scores that hit once in N need `first` ≫ N.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NormalMixture {
     alpha: f64,
@@ -83,7 +83,7 @@ pub struct EmpiricalBernstein {
     /// Σ x and Σ (x − prediction)² of the numbers scaled to [0, 1].
     sum: f64,
     squares: f64,
-    /// Σ λ, Σ λ x and Σ ψ(λ) 4 (x − prediction)², the λ being bets placed before each number is seen.
+    /// Σ λ, Σ λ x and Σ (−ln(1 − λ) − λ)(x − prediction)², the λ being bets placed before each number is seen.
     bets: f64,
     weighted: f64,
     spread: f64,
