@@ -1,5 +1,6 @@
-//! z-scores, how surprising they are, and how surprising many of them may be together.
+//! z-scores, and how surprising they are.
 
+use super::sidak_level;
 use super::special::complementary_error_function;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
@@ -12,18 +13,6 @@ pub fn z_score(value: f64, reference: f64, variance: f64) -> f64 {
 /// beyond which it is no normal number.
 pub fn two_sided_p(z: f64) -> f64 {
     complementary_error_function(z.abs() * FRAC_1_SQRT_2)
-}
-
-/// Probability that the smallest of `n` independent p-values is at most p: 1 − (1 − p)ⁿ (Šidák 1967).
-///
-/// For comparisons that are not independent it errs towards keeping the hypothesis wherever they are positively dependent.
-pub fn sidak(p: f64, n: usize) -> f64 {
-    -(n as f64 * (-p).ln_1p()).exp_m1()
-}
-
-/// The level of one comparison that gives `n` of them together the level alpha: 1 − (1 − α)^{1/n}, the inverse of [`sidak`].
-pub fn sidak_level(alpha: f64, n: usize) -> f64 {
-    if n == 0 { alpha } else { -((-alpha).ln_1p() / n as f64).exp_m1() }
 }
 
 /// The |z| that the largest of `n` comparisons exceeds with probability alpha, for alpha in (0, 1).

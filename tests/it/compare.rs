@@ -1,12 +1,12 @@
 //! Norms, verdicts and rates.
 
 use etendue::compare::{
-    Level, ROUNDING_TOLERANCE, RatesError, compare_blocks, observed_order, pooled, relative_max, relative_rms,
-    richardson,
+    Level, ROUNDING_TOLERANCE, RatesError, compare_blocks, equivalent_blocks, observed_order, p_value_map, p_values,
+    pooled, relative_max, relative_rms, richardson, z_map,
 };
 use etendue::linalg::Block;
 use etendue::sampling::Streams;
-use etendue::stats::{Moments, binomial_tail};
+use etendue::stats::{Moments, binomial_tail, p_value_histogram, two_sided_p};
 
 #[test]
 fn norms_weigh_as_they_say() {
@@ -110,6 +110,65 @@ fn rounding_in_a_variance_is_no_disagreement() {
     mean.set(4, 0, reference().get(4, 0) * (1.0 + 4.0 * f64::EPSILON));
     variance.set(4, 0, 1e-36);
     assert!(compare_blocks(&reference(), &mean, &variance, 1e-6).agrees);
+}
+
+#[test]
+fn maps_show_where_and_which_way() {
+    let (mut mean, mut variance) = experiment(&reference(), 8, 0.0);
+    mean.set(17, 2, reference().get(17, 2) - 6.0 * variance.get(17, 2).sqrt());
+    variance.set(5, 1, f64::NAN);
+    let z = z_map(&reference(), &mean, &variance);
+    assert!((z.get(17, 2) + 6.0).abs() < 1e-6 && z.get(5, 1) == f64::INFINITY && z.get(0, 1) == 0.0);
+    let p = p_value_map(&reference(), &mean, &variance);
+    assert_eq!((p.get(17, 2), p.get(5, 1), p.get(0, 1)), (two_sided_p(z.get(17, 2)), 0.0, 1.0));
+    // The verdict is that of the map's worst entry.
+    variance.set(5, 1, 1.0);
+    let verdict = compare_blocks(&reference(), &mean, &variance, 1e-6);
+    assert_eq!((verdict.worst_z, verdict.worst_at), (z.get(17, 2).abs(), (17, 2)));
+    // Row 0 is exact and tells nothing about error bars.
+    let all = p_values(&reference(), &mean, &variance);
+    assert_eq!((all.len(), verdict.n_comparisons), (117, 117));
+    assert!(all.contains(&p.get(17, 2)));
+}
+
+#[test]
+fn p_values_of_honest_error_bars_are_uniform_and_of_others_are_not() {
+    let mut honest = Vec::new();
+    let mut shrunk = Vec::new();
+    for seed in 0..20 {
+        let (mean, mut variance) = experiment(&reference(), 900 + seed, 0.0);
+        honest.extend(p_values(&reference(), &mean, &variance));
+        variance.values_mut().iter_mut().for_each(|v| *v *= 0.64);
+        shrunk.extend(p_values(&reference(), &mean, &variance));
+    }
+    assert!(p_value_histogram(&honest, 20).unwrap().uniformity.p_value > 1e-6);
+    // Error bars too small by a fifth.
+    assert!(p_value_histogram(&shrunk, 20).unwrap().uniformity.p_value < 1e-6);
+}
+
+#[test]
+fn equivalence_is_shown_everywhere_or_not_at_all() {
+    let (mut mean, variance) = experiment(&reference(), 9, 0.0);
+    // An error bar is 0.2/√12/10 = 0.0058, the largest of a column some 40: 0.1 % are seven of them.
+    let verdict = equivalent_blocks(&reference(), &mean, &variance, 1e-3, 1e-4);
+    assert!(verdict.holds && verdict.p_value < 1e-4 && verdict.n_comparisons == 120, "{verdict:?}");
+    // The smallest margin is the one that just holds.
+    let least = equivalent_blocks(&reference(), &mean, &variance, verdict.smallest_margin, 1e-4);
+    assert!((least.p_value / 1e-4 - 1.0).abs() < 1e-9, "{least:?}");
+    // A margin below the error bars shows nothing, nor do samples that are wrong in one place.
+    assert!(!equivalent_blocks(&reference(), &mean, &variance, 1e-4, 1e-4).holds);
+    mean.set(17, 2, reference().get(17, 2) + 0.05);
+    let verdict = equivalent_blocks(&reference(), &mean, &variance, 1e-3, 1e-4);
+    assert!(!verdict.holds && verdict.worst_at == (17, 2), "{verdict:?}");
+    mean.set(17, 2, f64::NAN);
+    let verdict = equivalent_blocks(&reference(), &mean, &variance, 1e-3, 1e-4);
+    assert!(!verdict.holds && verdict.p_value == 1.0 && verdict.smallest_margin == f64::INFINITY);
+    // Exact numbers are equal or are not; of nothing, nothing is shown.
+    let none = Block::zeros(40, 3);
+    assert_eq!(equivalent_blocks(&reference(), &reference(), &none, 1e-9, 1e-6).p_value, 0.0);
+    assert!(equivalent_blocks(&none, &none, &none, 1e-9, 1e-6).holds);
+    assert!(!equivalent_blocks(&none, &reference(), &none, 1e-9, 1e-6).holds);
+    assert!(!equivalent_blocks(&Block::zeros(0, 0), &Block::zeros(0, 0), &Block::zeros(0, 0), 1e-3, 0.1).holds);
 }
 
 /// Light that arrives late is dim everywhere: the eighth bounce of a lamp of radiance 1 may have a reference of 1e-4 in every bundle. The largest

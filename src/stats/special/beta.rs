@@ -50,7 +50,7 @@ fn excess(a: f64, b: f64, x: f64, complement: f64) -> f64 {
 }
 
 /// xᵃ (1 − x)ᵇ / B(a, b) = √(ab/(2πn)) exp(δ(n) − δ(a) − δ(b) − a dev(nx/a) − b dev(n(1 − x)/b)), n = a + b (Loader 2000).
-pub(in crate::stats) fn density(a: f64, b: f64, x: f64, complement: f64) -> f64 {
+pub(in super::super) fn density(a: f64, b: f64, x: f64, complement: f64) -> f64 {
     let n = a + b;
     let excess = excess(a, b, x, complement);
     let exponent = stirling_error(n)
