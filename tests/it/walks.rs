@@ -2,16 +2,21 @@
 
 use etendue::assembly::{Exchange, System, assemble};
 use etendue::basis::{Bundles, Resolution};
-use etendue::compare::compare_blocks;
-use etendue::estimator::{Bounces, Estimate, Estimator, EstimatorError, MatrixWalk, Scoring, Truth, estimate};
+use etendue::compare::{compare_blocks, relative_max};
+use etendue::estimator::{
+    Bounces, Estimate, Estimator, EstimatorError, MatrixWalk, Order, Prediction, Scoring, Truth, estimate,
+};
 use etendue::gallery;
-use etendue::linalg::Block;
+use etendue::linalg::{Block, Equation};
 use etendue::scene::Scene;
-use etendue::solver::{Gth, Solver};
+use etendue::solver::{Gth, SolveError, Solver};
+use etendue::stats::critical_z;
 
 /// Probability that one of these tests rejects walks that are right.
 const ALPHA: f64 = 1e-6;
 const SEED: u64 = 0x0dd5_0f0d_d5ee_d5a1;
+/// Elimination without subtraction loses some ulp an unknown, of which there are hundreds at most.
+const SOLVE_TOLERANCE: f64 = 1e-12;
 
 // ---------------------------------------------------------------------------------------------------------------------------------
 // Scenes and their exact answers
@@ -154,6 +159,114 @@ fn bounces_are_told_apart() {
             assert_agrees("a corner box", &exact, &estimate(&jacobi, 4_000, SEED));
         }
     }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------------------
+// Predicted error bars
+
+/// Any solver will do; this one subtracts nothing.
+fn by_elimination(equation: Equation<'_>) -> Result<Block, SolveError> {
+    Gth.solve(equation, &mut ()).map(|solution| solution.radiance)
+}
+
+/// Walks a start for the tests of variances: small by default, a million under ETENDUE_LARGE=1.
+fn n_large() -> u64 {
+    if std::env::var_os("ETENDUE_LARGE").is_some() { 1_000_000 } else { 50_000 }
+}
+
+/// How far a measured variance is from the predicted one, over all entries of a column together: Σ (s²/V − 1) over its standard error. The
+/// entries must be independent. Entries that do not vary must not vary.
+fn variance_z(prediction: &Prediction, drawn: &Estimate) -> f64 {
+    let n = drawn.n_samples as f64;
+    let errors = prediction.variance_standard_error(drawn.n_samples).unwrap();
+    let (mut sum, mut square) = (0.0, 0.0);
+    let entries = prediction.variance.values().iter().zip(drawn.variance_of_mean.values()).zip(errors.values());
+    for (((variance, measured), error), mean) in entries.zip(prediction.mean.values()) {
+        let rounding = (SOLVE_TOLERANCE * mean).powi(2);
+        if *variance <= rounding {
+            assert!(n * measured <= rounding, "{}: what is certain varies", drawn.estimator);
+            continue;
+        }
+        sum += n * measured / variance - 1.0;
+        square += (error / variance).powi(2);
+    }
+    if square == 0.0 { 0.0 } else { sum / square.sqrt() }
+}
+
+/// The prediction's mean is the answer, its error bars hold for the sample's mean, and its variance is the sample's.
+fn assert_predicted(name: &str, exact: &Block, prediction: &Prediction, drawn: &Estimate, n_families: usize) {
+    assert!(relative_max(&prediction.mean, exact) < SOLVE_TOLERANCE, "{} in {name}: the mean", drawn.estimator);
+    let mut variance_of_mean = prediction.variance.clone();
+    variance_of_mean.values_mut().iter_mut().for_each(|v| *v /= drawn.n_samples as f64);
+    let verdict = compare_blocks(exact, &drawn.mean, &variance_of_mean, ALPHA);
+    assert!(verdict.agrees, "{} in {name}: {verdict:?}", drawn.estimator);
+    let z = variance_z(prediction, drawn);
+    assert!(
+        z.abs() < critical_z(ALPHA, n_families),
+        "{} in {name}: the variance is off by {z} standard errors",
+        drawn.estimator
+    );
+}
+
+#[test]
+fn variances_of_gathering_walks_are_predicted() {
+    for (scene, patch_size) in scenes() {
+        let system = system(&scene, patch_size);
+        let (exact, walk) = (exact(&system), MatrixWalk::collision(&system).unwrap());
+        let wanted = measurements(&system);
+        for scoring in Scoring::ALL {
+            let walk = walk.with_scoring(scoring);
+            let prediction = walk.predict(Order::Fourth, &exact, by_elimination).unwrap();
+            assert_predicted(scene.name(), &exact, &prediction, &estimate(&walk, n_large(), SEED), 24);
+            let (measuring, measured) = (walk.measuring(&wanted).unwrap(), measured(&system, &wanted, &exact));
+            let prediction = measuring.predict(Order::Fourth, &exact, by_elimination).unwrap();
+            assert_predicted(scene.name(), &measured, &prediction, &estimate(&measuring, n_large(), SEED), 24);
+        }
+    }
+}
+
+#[test]
+fn variances_of_bounces_are_predicted() {
+    let system = system(&gallery::corner_box(), 1.0);
+    let walk = MatrixWalk::collision(&system).unwrap();
+    let wanted = measurements(&system);
+    for bounces in [Bounces::Each(8), Bounces::UpTo(3), Bounces::UpTo(0)] {
+        let exact = exact_bounces(&system, bounces);
+        for scoring in Scoring::ALL {
+            let walk = walk.with_scoring(scoring).with_bounces(bounces).measuring(&wanted).unwrap();
+            let never = |_: Equation<'_>| -> Result<Block, SolveError> { panic!("bounces that end need no solve") };
+            let prediction = walk.predict(Order::Fourth, &exact, never).unwrap();
+            assert_predicted(
+                "a corner box",
+                &measured(&system, &wanted, &exact),
+                &prediction,
+                &estimate(&walk, 100_000, SEED),
+                12,
+            );
+        }
+    }
+}
+
+/// `samples_for` names a number of walks that meets the error, and half as many would not.
+#[test]
+fn samples_for_an_error_are_enough_and_not_too_many() {
+    let system = system(&gallery::corner_box(), 1.0);
+    let (exact, walk) = (exact(&system), MatrixWalk::collision(&system).unwrap());
+    let prediction = walk.predict(Order::Variance, &exact, by_elimination).unwrap();
+    assert_eq!((&prediction.third, &prediction.fourth), (&None, &None));
+    let error = 0.02 * exact.max_abs();
+    let n_walks = prediction.samples_for(error);
+    assert!(
+        prediction.standard_error(n_walks).max_abs() <= error
+            && prediction.standard_error(n_walks / 2).max_abs() > error
+    );
+    let drawn = estimate(&walk, n_walks, SEED);
+    let largest = drawn.variance_of_mean.values().iter().fold(0.0, |a: f64, v| a.max(v.sqrt()));
+    assert!((largest / error - 1.0).abs() < 0.25, "{n_walks} walks leave {largest} of {error}");
+    let n_walks = prediction.samples_for_relative(0.01);
+    let errors = prediction.standard_error(n_walks);
+    let worst = errors.values().iter().zip(exact.values()).map(|(e, l)| e / l).fold(0.0, f64::max);
+    assert!((worst / 0.01 - 1.0).abs() < 1e-3, "{worst}");
 }
 
 // ---------------------------------------------------------------------------------------------------------------------------------

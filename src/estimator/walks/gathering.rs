@@ -126,8 +126,16 @@ impl MatrixWalk {
         Self { scoring, columns, chain, bundles, emission }
     }
 
-    pub(super) fn columns(&self) -> Columns {
-        self.columns
+    pub(super) fn bounces(&self) -> Bounces {
+        self.columns.bounces
+    }
+
+    /// α and β, n × bands each.
+    pub(super) fn scores(&self) -> [Block; 2] {
+        let (n, n_bands) = (self.chain.n_bundles(), self.chain.n_bands);
+        let at =
+            |first: usize| Block::from_fn(n, n_bands, |i, band| self.bundles[i * (1 + 3 * n_bands) + first + band]);
+        [at(1 + n_bands), at(1 + 2 * n_bands)]
     }
 
     pub(super) fn emission(&self) -> &Block {
