@@ -42,3 +42,4 @@ mod tails;
 mod threads;
 mod tracing;
 mod verdicts;
+mod walks;

@@ -2,5 +2,15 @@
 
 mod chain;
 mod gathering;
+mod jacobi;
+mod measuring;
+mod oracle;
+mod scoring;
+mod shooting;
 
-pub use gathering::{MatrixWalk, Scoring};
+pub use gathering::MatrixWalk;
+pub use jacobi::StochasticJacobi;
+pub use measuring::MeasuringWalk;
+pub use oracle::{OracleError, Order, Prediction};
+pub use scoring::Scoring;
+pub use shooting::ShootingWalk;
