@@ -10,6 +10,14 @@ pub enum EstimatorError {
     Propagation(#[source] AliasError),
     #[error("a walk from bundle {bundle} never ends: nothing it can reach absorbs in every band, or lets light out")]
     NeverEnds { bundle: usize },
+    #[error("measurement {measurement} cannot be drawn from: {source}")]
+    Measurement { measurement: usize, source: AliasError },
+    #[error("light cannot be shot: exchange is not symmetric, its closure was repaired by rows")]
+    NotReciprocal,
+    #[error("light cannot be shot: no emission to draw from: {0}")]
+    Emission(#[source] AliasError),
+    #[error("a run needs at least one particle")]
+    NoParticles,
     #[error("emitters cannot be chosen by their power: {0}")]
     Emitters(#[source] AliasError),
     #[error("element {element} is not a patch: paths start on surfaces")]

@@ -19,8 +19,9 @@ pub use estimate::{Estimate, MergeError, WeightedMean};
 pub use paths::{Bidirectional, Heuristic, LightTracer, PathTracer, Roulette, Sampling};
 pub use run::{estimate, estimate_range, estimate_watched};
 pub use score::Score;
-pub use walks::{MatrixWalk, Scoring};
+pub use walks::{MatrixWalk, MeasuringWalk, Scoring, ShootingWalk, StochasticJacobi};
 
+use crate::linalg::Block;
 use crate::sampling::{Stream, Streams};
 use std::fmt;
 use std::ops::Range;
@@ -67,6 +68,11 @@ pub trait Estimator: Sync {
     /// The bundles that samples from this start may score.
     fn reach(&self, start: usize) -> Range<usize> {
         start..start + 1
+    }
+
+    /// What is added to the means without being sampled, n × columns, where something is: the samples' expectation is the rest.
+    fn known(&self) -> Option<&Block> {
+        None
     }
 
     /// Adds one sample to the score. For every bundle in reach, the expectation of what is added is its radiance; bundles to which

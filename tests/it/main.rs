@@ -38,3 +38,4 @@ mod sphere;
 mod stats;
 mod threads;
 mod tracing;
+mod walks;

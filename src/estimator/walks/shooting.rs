@@ -1,0 +1,144 @@
+//! Random walks on the assembled matrix: shooting, one particle a sample, scored in every bundle it comes by.
+//!
+//! ```text
+//! μᵢ Lᵢ = μᵢ Eᵢ + aᵢ Σⱼ Gⱼᵢ μⱼ Lⱼ        power, and T = M G symmetric
+//! ```
+//!
+//! A particle is born on bundle i with probability qᵢ ∝ μᵢ max over bands Eᵢ and power w = μᵢ Eᵢ / qᵢ. It steps to bundle j with probability
+//! Gᵢⱼ, is absorbed there with probability 1 − pⱼ, and goes on with power w aⱼ / pⱼ. Where it arrives, it scores w αⱼ / μⱼ if it is absorbed
+//! and w βⱼ / μⱼ if not, with (1 − p) α + p β = a: every arrival with what is reflected on average (*continuous* shooting, the collision
+//! scoring), or only where whole particles end or go on (*discrete* shooting, absorption and survival; see [`Scoring`]). E itself is added
+//! unsampled. Expected values score as collision does: the reflected power is the expectation already.
+//!
+//! The mean of every bundle is L without bias. All moments exist where those of [`MatrixWalk`](super::MatrixWalk) do. Errors of different
+//! bundles are not independent.
+//!
+//! Cost: one random number and one alias slot a step. Source: Pattanaik & Mudur 1992; Bekaert 1999, §4.3; Sbert 1997 (variances).
+
+use super::super::bands::Bands;
+use super::super::bounces::Columns;
+use super::super::{Bounces, Estimator, EstimatorError, Score, Truth};
+use super::chain::Chain;
+use super::gathering::add;
+use super::measuring::Starts;
+use super::{MatrixWalk, Scoring};
+use crate::linalg::Block;
+use crate::sampling::Stream;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Particles on K whose mean is (I − K)⁻¹E, in every band. One start, which scores every bundle.
+#[derive(Clone, Debug)]
+pub struct ShootingWalk {
+    scoring: Scoring,
+    columns: Columns,
+    pub(super) chain: Arc<Chain>,
+    pub(super) births: Arc<Starts>,
+    /// n × (1 + 3 bands), row by row: p, then a / p, α / μ and β / μ of every band.
+    bundles: Vec<f64>,
+    known: Block,
+}
+
+impl MatrixWalk {
+    /// Particles on the same tables, shot from the system's emission.
+    ///
+    /// # Errors
+    /// No emission, or exchange that is not symmetric.
+    pub fn shooting(&self, scoring: Scoring) -> Result<ShootingWalk, EstimatorError> {
+        let chain = self.chain.clone();
+        if !chain.is_reciprocal {
+            return Err(EstimatorError::NotReciprocal);
+        }
+        let births = Starts::new(&chain.emission, &chain.etendue).map_err(EstimatorError::Emission)?;
+        let mut bundles = Vec::with_capacity(chain.n_bundles() * (1 + 3 * chain.n_bands));
+        for (i, (survival, mu)) in chain.survival.iter().zip(chain.etendue.iter()).enumerate() {
+            let (last, other) = scoring.shares(*survival);
+            bundles.push(*survival);
+            bundles.extend(chain.gain(i));
+            bundles.extend(chain.albedo.row(i).map(|a| last * a / mu));
+            bundles.extend(chain.albedo.row(i).map(|a| other * a / mu));
+        }
+        let columns = Columns { n_bands: chain.n_bands, bounces: Bounces::All };
+        let known = chain.emission.clone();
+        Ok(ShootingWalk { scoring, columns, chain, births: Arc::new(births), bundles, known })
+    }
+}
+
+impl ShootingWalk {
+    /// The same particles, scored for these bounces.
+    pub fn with_bounces(self, bounces: Bounces) -> Self {
+        let columns = Columns { bounces, ..self.columns };
+        let known = columns.first(&self.chain.emission);
+        Self { columns, known, ..self }
+    }
+
+    pub fn scoring(&self) -> Scoring {
+        self.scoring
+    }
+}
+
+impl Estimator for ShootingWalk {
+    fn name(&self) -> &'static str {
+        match self.scoring {
+            Scoring::Collision => "collision-shooting",
+            Scoring::Absorption => "absorption-shooting",
+            Scoring::Survival => "survival-shooting",
+            Scoring::ExpectedValue => "expected-value-shooting",
+        }
+    }
+
+    fn truth(&self) -> Truth {
+        Truth::Discrete
+    }
+
+    fn n_bundles(&self) -> usize {
+        self.chain.n_bundles()
+    }
+
+    fn n_columns(&self) -> usize {
+        self.columns.count()
+    }
+
+    fn n_starts(&self) -> usize {
+        1
+    }
+
+    fn reach(&self, _: usize) -> Range<usize> {
+        0..self.n_bundles()
+    }
+
+    fn known(&self) -> Option<&Block> {
+        Some(&self.known)
+    }
+
+    fn sample(&self, _: usize, stream: &mut Stream, score: &mut Score) {
+        // Draw where it is born, with the power it carries.
+        let n_bands = self.chain.n_bands;
+        let mut bundle = self.births.draw(stream);
+        let mut power = Bands::all(0.0, n_bands);
+        power.iter_mut().zip(self.births.weights(bundle)).for_each(|(power, w)| *power = w);
+        let mut uniform = stream.uniform();
+        for bounce in 1.. {
+            // Go to the next bundle, maybe out of the scene.
+            let Some(here) = self.columns.of(bounce) else { return };
+            score.count_steps(1);
+            let Some(next) = self.chain.steps.sample(bundle, uniform) else { return };
+            bundle = next;
+            let row = &self.bundles[bundle * (1 + 3 * n_bands)..][..1 + 3 * n_bands];
+            let (survival, row) = (row[0], &row[1..]);
+            let (gain, row) = row.split_at(n_bands);
+            let (at_last, at_other) = row.split_at(n_bands);
+
+            // Absorb it with probability 1 − p; below p, the number over p is uniform again.
+            uniform = stream.uniform();
+            let totals = &mut score.totals(bundle)[here];
+            if uniform >= survival {
+                add(totals, &power, at_last);
+                return;
+            }
+            add(totals, &power, at_other);
+            uniform /= survival;
+            power.iter_mut().zip(gain).for_each(|(power, gain)| *power *= gain);
+        }
+    }
+}
