@@ -24,6 +24,8 @@ pub enum EstimatorError {
     NotAPatch { element: usize },
     #[error("element {element} lies on facet {facet}, but the scene has {n_facets}: the bundles are another scene's")]
     ForeignBundles { element: usize, facet: usize, n_facets: usize },
+    #[error("strategy ({n_light}, 0) has no vertex on the bundle: that is light tracing")]
+    NoEyeVertex { n_light: usize },
     #[error("the probability that paths go on is {survival:e}, must be above 0 and at most 1")]
     Survival { survival: f64 },
 }

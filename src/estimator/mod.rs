@@ -16,7 +16,7 @@ mod walks;
 pub use bounces::Bounces;
 pub use error::EstimatorError;
 pub use estimate::{Estimate, MergeError, WeightedMean};
-pub use paths::{Heuristic, LightTracer, PathTracer, Roulette, Sampling};
+pub use paths::{Bidirectional, Heuristic, LightTracer, PathTracer, Roulette, Sampling};
 pub use run::{estimate, estimate_range, estimate_watched};
 pub use score::Score;
 pub use walks::{MatrixWalk, MeasuringWalk, OracleError, Order, Prediction, Scoring, ShootingWalk, StochasticJacobi};

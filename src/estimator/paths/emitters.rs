@@ -46,14 +46,8 @@ impl<'a> Emitters<'a> {
     /// An emitter and a point of it. Draws three numbers.
     #[inline]
     pub fn point(&self, stream: &mut Stream) -> (&Emitter<'a>, Vec3) {
-        let emitter = self.choose(stream.uniform());
+        let emitter = &self.emitters[self.choice.sample(stream.uniform())];
         (emitter, emitter.polygon.sample(stream.uniform2()))
-    }
-
-    /// An emitter in proportion to its power.
-    #[inline]
-    pub fn choose(&self, uniform: f64) -> &Emitter<'a> {
-        &self.emitters[self.choice.sample(uniform)]
     }
 
     /// Density of [`Emitters::point`] by area, m⁻², at any point of a facet's front.

@@ -1,14 +1,17 @@
 //! Light paths in the scene itself: the continuous truth.
 
+mod bidirectional;
 mod emitters;
 mod heuristic;
 mod light_tracer;
 mod path_tracer;
+mod photon;
 mod reflection;
 mod roulette;
 mod stage;
 mod white;
 
+pub use bidirectional::Bidirectional;
 pub use heuristic::Heuristic;
 pub use light_tracer::LightTracer;
 pub use path_tracer::{PathTracer, Sampling};

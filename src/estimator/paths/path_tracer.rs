@@ -25,9 +25,8 @@ use super::super::{Bounces, Estimator, EstimatorError, Score, Truth};
 use super::stage::{Arrival, Stage, Vertex};
 use super::{Heuristic, Roulette};
 use crate::basis::Bundles;
-use crate::sampling::{Stream, Streams};
+use crate::sampling::Stream;
 use crate::scene::{Scene, Side};
-use std::ops::Range;
 
 /// How paths find emitters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -83,15 +82,6 @@ impl<'a> PathTracer<'a> {
     /// The same paths, scored for these bounces.
     pub fn with_bounces(self, bounces: Bounces) -> Self {
         Self { columns: Columns { bounces, ..self.columns }, ..self }
-    }
-
-    /// The rays that these samples of every start cast: closest hits and shadow rays. Cost: the samples themselves.
-    pub fn n_rays(&self, samples: Range<u64>, seed: u64) -> u64 {
-        let streams = Streams::new(seed, self.name());
-        let mut score = Score::new(0..self.n_bundles(), self.n_columns());
-        let starts = 0..self.n_starts();
-        let mut keys = starts.flat_map(|start| samples.clone().map(move |number| (start, number)));
-        keys.by_ref().map(|(start, number)| self.trace(start, &mut streams.stream(start as u32, number), &mut score)).sum()
     }
 
     /// Adds one path to the score. Returns how many rays it cast.
@@ -227,6 +217,7 @@ impl Estimator for PathTracer<'_> {
     }
 
     fn sample(&self, start: usize, stream: &mut Stream, score: &mut Score) {
-        self.trace(start, stream, score);
+        let n_rays = self.trace(start, stream, score);
+        score.count_steps(n_rays);
     }
 }

@@ -1,11 +1,13 @@
 //! The scene as paths see it.
 
 use super::super::EstimatorError;
-use super::emitters::{Emitter, Emitters};
+use super::super::bounces::Columns;
+use super::emitters::Emitters;
 use super::reflection::Reflection;
 use super::white;
 use crate::basis::{Bundles, Patch};
 use crate::geometry::{Frame, Hit, Polygon, Ray, Tracer, Vec3};
+use crate::linalg::Block;
 use crate::sampling::{Stream, warp};
 use crate::scene::{Scene, Side};
 
@@ -90,12 +92,15 @@ impl<'a> Stage<'a> {
         Some(Vertex { facet: patch.facet, side: patch.side, position, frame: &face.frame, reflection, given })
     }
 
-    /// Where light starts: uniform on an emitter, with density cosθ/π. The direction is the world's.
-    #[inline]
-    pub fn emit<'e>(&self, emitter: &'e Emitter<'a>, stream: &mut Stream) -> (&'e Emitter<'a>, Vec3, Vec3) {
-        let position = emitter.polygon.sample(stream.uniform2());
-        let direction = Vec3::from(warp::cosine_hemisphere(stream.uniform2()));
-        (emitter, position, self.face(emitter.facet, Side::Front).frame.to_world(direction))
+    /// What every bundle emits, n × columns.
+    pub fn emitted(&self, columns: Columns) -> Block {
+        let mut emitted = Block::zeros(self.patches.len(), columns.count());
+        let Some(here) = columns.of(0) else { return emitted };
+        for (bundle, patch) in self.patches.iter().enumerate() {
+            let emission = here.clone().zip(self.emission(patch.facet, patch.side));
+            emission.for_each(|(column, emission)| emitted.set(bundle, column, *emission));
+        }
+        emitted
     }
 
     /// Follows a ray from a point of a facet to the first surface; `None` where it leaves the scene.
