@@ -291,7 +291,7 @@ pub struct Check {
 }
 
 fn solver_names() -> Vec<&'static str> {
-    solver::everyone(1.0).iter().map(|solver| solver.name()).collect()
+    solver::all(1.0).iter().map(|solver| solver.name()).collect()
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -91,8 +91,7 @@ fn folder_name(scene: &str) -> String {
 
 /// The methods asked for, the first direct one before all others: it is the reference.
 fn solvers(asked: &[String]) -> Vec<String> {
-    let all: Vec<(&str, bool)> =
-        solver::everyone(1.0).iter().map(|method| (method.name(), method.is_direct())).collect();
+    let all: Vec<(&str, bool)> = solver::all(1.0).iter().map(|method| (method.name(), method.is_direct())).collect();
     let is_asked = |name: &str| asked.iter().any(|word| word == name || word == "all");
     let mut chosen: Vec<(&str, bool)> = all.iter().copied().filter(|(name, _)| is_asked(name)).collect();
     match chosen.iter().position(|(_, is_direct)| *is_direct) {

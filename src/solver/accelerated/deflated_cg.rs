@@ -15,15 +15,21 @@
 //! Source: Nicolaides (1987); Saad, Yeung, Erhel and Guyomarc'h (2000), algorithm 3.6.
 
 use super::super::monitor::Monitor;
-use super::super::report::{band_residual, conclude, relative_residual};
-use super::super::{Observer, Solution, SolveError, Solver};
+use super::super::report::{band_residual, relative_residual};
+use super::super::{Attempt, Observer, SolveError, Solver};
 use super::coarse::{self, Coarse};
 use super::shifted::Shifted;
 use super::two_grid::level;
-use crate::linalg::{Block, Equation};
+use crate::linalg::{Block, Equation, max_abs};
 
 /// |⟨x, K y⟩ − ⟨K x, y⟩| relative to ‖x‖ ‖K y‖: rounding leaves some n^½ ulp, a wrong μ or a lost symmetry leaves far more.
 const SELF_ADJOINT: f64 = 1e-10;
+
+/// A residual whose share in the coarse space is below this is orthogonal to it.
+const ORTHOGONAL: f64 = 1e-6;
+
+/// Coarse corrections to begin with at most: where the coarse answer is the answer, rounding is all that the first leaves.
+const STARTS: usize = 3;
 
 /// Iterates until the residual is below the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +45,11 @@ impl Solver for DeflatedCg {
         "deflated-cg"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let method = self.name();
         let mut monitor = Monitor::new(method, equation, self.tolerance, observer);
         let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
@@ -66,15 +76,24 @@ impl Solver for DeflatedCg {
         let mut field = Shifted::at(equation.emission);
         let mut gathered = vec![0.0; coarse.n_groups()];
         let mut spread = gathered.clone();
-        for band in 0..n_bands {
-            coarse.gather(band, r.column(band), &mut gathered);
-            let constant = coarse.solve(band, &mut gathered);
-            field.constants[band] = constant;
-            coarse.prolong(band, &gathered, field.rest.column_mut(band));
-            coarse.correct(band, constant, &gathered, r.column_mut(band));
-            settle(coarse.weight(band), field.rest.column_mut(band), r.column_mut(band));
+        for _ in 0..STARTS {
+            let mut is_orthogonal = true;
+            for band in 0..n_bands {
+                coarse.gather(band, r.column(band), &mut gathered);
+                let constant = coarse.solve(band, &mut gathered);
+                field.constants[band] += constant;
+                coarse.prolong(band, &gathered, field.rest.column_mut(band));
+                coarse.correct(band, constant, &gathered, r.column_mut(band));
+                settle(coarse.weight(band), field.rest.column_mut(band), r.column_mut(band));
+                coarse.gather(band, r.column(band), &mut gathered);
+                let whole: f64 = coarse.weight(band).iter().zip(r.column(band)).map(|(w, r)| w * r.abs()).sum();
+                is_orthogonal &= max_abs(&gathered) <= ORTHOGONAL * whole;
+            }
+            monitor.work.products += coarse.pass_work();
+            if is_orthogonal {
+                break;
+            }
         }
-        monitor.work.products += coarse.pass_work();
 
         let (mut p, mut image) = (Block::zeros(n, n_bands), Block::zeros(n, n_bands));
         let (mut z, mut scratch) = (Block::zeros(n, n_bands), vec![0.0; n]);
@@ -131,7 +150,7 @@ impl Solver for DeflatedCg {
                 *norm = inner(&coarse, band, r.column(band), z.column(band));
             }
         };
-        conclude(method, equation, radiance, stop, monitor.work, monitor.history)
+        Ok(Attempt::ended(field.doubled(&coarse), stop, monitor))
     }
 }
 

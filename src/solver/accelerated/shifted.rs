@@ -4,7 +4,7 @@
 //! costs the rest no digits, and the residual of both, r = E − α a + K v − v, none either.
 
 use super::coarse::Coarse;
-use crate::linalg::Block;
+use crate::linalg::{Block, Doubled};
 
 /// α of every band and v.
 pub(super) struct Shifted {
@@ -24,5 +24,17 @@ impl Shifted {
         for (band, constant) in self.constants.iter().enumerate() {
             coarse.prolong_constant(band, *constant, out.column_mut(band));
         }
+    }
+
+    /// α P 1 + v, with what rounding takes from it.
+    pub fn doubled(&self, coarse: &Coarse) -> Doubled {
+        let mut sum = Doubled::from(self.rest.clone());
+        let mut constant = vec![0.0; self.rest.n_rows()];
+        for (band, alpha) in self.constants.iter().enumerate() {
+            constant.fill(0.0);
+            coarse.prolong_constant(band, *alpha, &mut constant);
+            sum.add_scaled(band, 1.0, &constant);
+        }
+        sum
     }
 }

@@ -14,8 +14,8 @@
 //! (1960); Atkinson (1976), §5.3; as an iterated Galerkin correction, Hackbusch (1985), §16.
 
 use super::super::monitor::Monitor;
-use super::super::report::{conclude, relative_residual};
-use super::super::{Observer, Solution, SolveError, Solver};
+use super::super::report::relative_residual;
+use super::super::{Attempt, Observer, SolveError, Solver};
 use super::coarse::{self, Coarse};
 use super::shifted::Shifted;
 use crate::linalg::{Aggregation, Block, Equation, max_abs};
@@ -76,7 +76,11 @@ impl Solver for TwoGrid {
         "two-grid"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         iterate(
             Monitor::new(self.name(), equation, self.tolerance, observer),
             self.name(),
@@ -92,7 +96,11 @@ impl Solver for Perron {
         "perron"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         iterate(
             Monitor::new(self.name(), equation, self.tolerance, observer),
             self.name(),
@@ -148,13 +156,13 @@ fn smooth(
     if smoother == Smoother::Near { coarse.near_work() } else { 0.0 }
 }
 
-fn iterate(
+fn iterate<'a>(
     mut monitor: Monitor<'_>,
     method: &'static str,
-    equation: Equation<'_>,
+    equation: Equation<'a>,
     aggregation: Aggregation,
     smoother: Smoother,
-) -> Result<Solution, SolveError> {
+) -> Result<Attempt<'a>, SolveError> {
     // Read K once: the coarse equation, and the first bounce.
     let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
     let mut first = [Block::zeros(n, n_bands)];
@@ -187,5 +195,5 @@ fn iterate(
         monitor.count_applies(1);
         field.rest.add_scaled(1.0, &step);
     };
-    conclude(method, equation, radiance, stop, monitor.work, monitor.history)
+    Ok(Attempt::ended(field.doubled(&coarse), stop, monitor))
 }

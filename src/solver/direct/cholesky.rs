@@ -7,11 +7,12 @@
 //! Needs the self-adjoint form and checks it by two products: a factorization that reads one triangle would not notice. The matrix is
 //! symmetric because M G is, and positive definite where ρ(K) < 1. Writes it out in full. Cost ⅓ n³ a band, half of LU's.
 
-use super::factored::Band;
-use crate::linalg::{Block, CholeskyFactor, Dense, Equation, FactorError, SelfAdjoint, Sparse};
-use crate::solver::report::{Work, conclude};
+use super::factored::{Band, substitute};
+use crate::linalg::{Block, CholeskyFactor, Dense, Equation, FactorError, Factorization, SelfAdjoint, Sparse};
+use crate::solver::attempt::Again;
+use crate::solver::report::Work;
 use crate::solver::self_adjoint::{CHECK, checked_form};
-use crate::solver::{Observer, Solution, SolveError, Solver, Stop};
+use crate::solver::{Attempt, Observer, SolveError, Solver, refine};
 use rayon::prelude::*;
 
 /// Cholesky by faer.
@@ -27,43 +28,60 @@ impl Solver for Cholesky {
         true
     }
 
-    fn solve(&self, equation: Equation<'_>, _: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn attempt<'a>(&self, equation: Equation<'a>, _: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         solve_symmetrised(self.name(), equation, |form, band, weight| {
             Ok((Box::new(CholeskyFactor::new(&symmetrised(form, band, weight))?), None))
         })
     }
 }
 
-/// Factors and solves the symmetrised equation, band after band.
-pub(super) fn solve_symmetrised(
+/// Factors and solves the symmetrised equation, band after band; keeps the factors where they may be needed again.
+pub(super) fn solve_symmetrised<'a>(
     method: &'static str,
-    equation: Equation<'_>,
+    equation: Equation<'a>,
     factor: impl Fn(SelfAdjoint<'_>, usize, &[f64]) -> Result<Band, FactorError>,
-) -> Result<Solution, SolveError> {
+) -> Result<Attempt<'a>, SolveError> {
     let form = checked_form(method, equation)?;
     let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
     let weight: Vec<f64> = form.etendue.iter().map(|mu| mu.sqrt()).collect();
 
     // The right-hand side for all bands at once.
-    let (mut scratch, mut right) = (Block::zeros(n, n_bands), Block::zeros(n, n_bands));
-    let mut n_applies = CHECK + form.right_side(equation.emission, &mut scratch, &mut right);
+    let zeros = || Block::zeros(n, n_bands);
+    let (mut scratch, mut right, mut radiance) = (zeros(), zeros(), zeros());
+    let mut work = Work::default();
+    work.count_applies(CHECK + form.right_side(equation.emission, &mut scratch, &mut right));
 
-    let mut answer = Block::zeros(n, n_bands);
-    let mut fullest = None;
+    let mut kept = Vec::new();
+    let mut column = Block::zeros(n, 1);
     for band in 0..n_bands {
         let (factors, n_fill) =
             factor(form, band, &weight).map_err(|source| SolveError::Factor { method, band, source })?;
-        fullest = fullest.max(n_fill);
-        let mut v = Block::from_fn(n, 1, |i, _| weight[i] * right.get(i, band));
-        factors.solve(&mut v);
-        let unweighted = v.column(0).iter().zip(&weight).map(|(v, w)| v / w);
-        answer.column_mut(band).iter_mut().zip(unweighted).for_each(|(u, v)| *u = v);
+        work.n_fill = work.n_fill.max(n_fill);
+        substitute_weighted(&*factors, &weight, &mut column, right.column_mut(band));
+        if refine::may_be_needed(equation) {
+            kept.push(factors);
+        }
     }
+    work.count_applies(form.answer(equation.emission, &right, &mut scratch, &mut radiance));
 
-    let mut radiance = Block::zeros(n, n_bands);
-    n_applies += form.answer(equation.emission, &answer, &mut scratch, &mut radiance);
-    let work = Work { n_applies, products: n_applies as f64, n_fill: fullest, ..Work::default() };
-    conclude(method, equation, radiance, Stop::Direct, work, Vec::new())
+    let again = (!kept.is_empty()).then(|| {
+        let again = move |r: &Block, correction: &mut Block, work: &mut Work| {
+            work.count_applies(form.right_side(r, &mut scratch, &mut right));
+            for (band, factors) in kept.iter().enumerate() {
+                substitute_weighted(&**factors, &weight, &mut column, right.column_mut(band));
+            }
+            work.count_applies(form.answer(r, &right, &mut scratch, correction));
+        };
+        Box::new(again) as Again<'a>
+    });
+    Ok(Attempt::direct(radiance, work, again))
+}
+
+/// u ← M^−½ C⁻ᵀ C⁻¹ M^½ u of one band.
+fn substitute_weighted(factors: &dyn Factorization, weight: &[f64], column: &mut Block, u: &mut [f64]) {
+    u.iter_mut().zip(weight).for_each(|(u, w)| *u *= w);
+    substitute(factors, column, u);
+    u.iter_mut().zip(weight).for_each(|(u, w)| *u /= w);
 }
 
 /// I − M^½ S^½ G S^½ M^−½ of one band.

@@ -15,7 +15,7 @@ use crate::linalg::{Block, Dense, Equation, LinearOperator, LuFactor, Range};
 use crate::solver::krylov::{Preconditioner, Prepared, minimise};
 use crate::solver::monitor::Monitor;
 use crate::solver::report::Work;
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// Iterations of GMRES between restarts.
 const RESTART: usize = 30;
@@ -35,11 +35,15 @@ impl Solver for LowRank {
         "low-rank"
     }
 
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
     fn writes_out(&self) -> bool {
         true
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
         minimise(self.name(), equation, self.tolerance, RESTART, Some(self), monitor)
     }

@@ -12,7 +12,7 @@
 use super::cholesky::{solve_symmetrised, symmetrised};
 use super::factored::{Band, Factored, eliminate};
 use crate::linalg::{Equation, FactorError, Factorization, Sparse, SparseCholeskyFactor, SparseLuFactor};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// Sparse LU by faer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +41,7 @@ impl Solver for SparseLu {
         true
     }
 
-    fn solve(&self, equation: Equation<'_>, _: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn attempt<'a>(&self, equation: Equation<'a>, _: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         eliminate(self.name(), equation, factor)
     }
 }
@@ -55,7 +55,7 @@ impl Solver for SparseCholesky {
         true
     }
 
-    fn solve(&self, equation: Equation<'_>, _: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn attempt<'a>(&self, equation: Equation<'a>, _: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         solve_symmetrised(self.name(), equation, |form, band, weight| {
             let matrix = Sparse::from_operator(&symmetrised(form, band, weight), 0);
             let factor = SparseCholeskyFactor::new(&matrix)?;

@@ -131,7 +131,7 @@ fn the_numbers_are_those_of_the_equation() {
 #[test]
 fn every_solver_answers_the_furnace() {
     let exact = [2.0, 2.0, 2.5];
-    for method in etendue::solver::everyone(1e-12) {
+    for method in etendue::solver::all(1e-12) {
         let object = solve(&["furnace-cube", "--patch-size", "0.5", "--solver", method.name()]);
         let report = &object["report"];
         assert_eq!(report["solver"], method.name());

@@ -54,7 +54,7 @@ fn a_study_writes_its_folder_whole_and_replaces_its_own() {
         assert!(names.iter().any(|found| found == name), "{name} is not in {names:?}");
     }
     assert_eq!(desk.names("out"), ["cornell"]);
-    for method in etendue::solver::everyone(1.0) {
+    for method in etendue::solver::all(1.0) {
         assert!(first.stdout.lines().any(|line| line.starts_with(method.name())), "{}", first.stdout);
     }
     assert!(first.stdout.trim_end().ends_with("report.html"), "{}", first.stdout);
