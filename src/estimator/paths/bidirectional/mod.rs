@@ -46,7 +46,11 @@ pub struct Bidirectional<'a> {
 enum Part {
     All,
     /// One alone: unweighted, or with the weight that it has among all.
-    One { n_light: usize, n_eye: usize, is_weighted: bool },
+    One {
+        n_light: usize,
+        n_eye: usize,
+        is_weighted: bool,
+    },
 }
 
 impl<'a> Bidirectional<'a> {
@@ -151,7 +155,8 @@ impl Estimator for Bidirectional<'_> {
     fn sample(&self, start: usize, stream: &mut Stream, score: &mut Score) {
         let (most_light, most_eye) = self.most_vertices();
         let stage = &self.stage;
-        let eye = subpath::from_bundle(stage, stage.patches[start], self.roulette, most_eye, self.columns.n_bands, stream);
+        let eye =
+            subpath::from_bundle(stage, stage.patches[start], self.roulette, most_eye, self.columns.n_bands, stream);
         let light = subpath::from_light(stage, self.roulette, most_light, self.columns.n_bands, stream);
         for t in 1..=eye.len() {
             for s in 0..=light.len() {

@@ -157,7 +157,7 @@ fn extend<'s>(
                 }
                 throughput.iter_mut().for_each(|carried| *carried /= survival);
             }
-        } 
+        }
 
         // Go there, and tell the vertex before how likely it was the other way.
         let reverse = here.density_back(direction);
