@@ -6,10 +6,16 @@ use crate::geometry::Vec3;
 /// A corner nearer to a singularity than this, relative to the extent of its cell, is one.
 const AT: f64 = 1e-8;
 
-/// A cell as its singularities are measured by: the ends of the lines across it, of which the last two and the first two are its sides.
+/// Singularities further away than this, as a sum of distances from the ends of a line in units of its length, speed rules up by no more than
+/// they start with anyway.
+const FAR: f64 = 5.05;
+
+/// What of a cell tells how far singularities are along its axes.
 struct Axes {
     /// Corners in turn, then the middles of the sides that begin in them.
     points: [Vec3; 8],
+    centre: Vec3,
+    radius: f64,
     has_apex: bool,
     /// Smallest sum of distances from the ends of a line along either axis, in units of its length.
     sums: [f64; 2],
@@ -22,13 +28,20 @@ impl Axes {
     fn new(&[a, b, c, d]: &[Vec3; 4]) -> Self {
         let middle = |p: Vec3, q: Vec3| 0.5 * (p + q);
         let points = [a, b, c, d, middle(a, b), middle(b, c), middle(c, d), middle(d, a)];
-        Self { points, has_apex: a == d, sums: [f64::INFINITY; 2] }
+        let centre = 0.25 * (a + b + c + d);
+        let radius = points[..4].iter().map(|v| v.distance_squared(centre)).fold(0.0, f64::max).sqrt();
+        Self { points, centre, radius, has_apex: a == d, sums: [FAR; 2] }
     }
 
-    /// Takes note of singularities where a linear function with values in space, or complex ones, has a square of zero.
+    /// Takes note of singularities where a linear function with values in space, or complex ones, has a square of zero. It grows no faster than
+    /// `slope`.
     ///
     /// On a line, in units of half its length, that is at the complex z with (|z + 1| + |z − 1|) / 2 = (|g(−1)| + |g(1)|) / |g(1) − g(−1)|.
-    fn avoid(&mut self, function: impl Fn(Vec3) -> Vec3) {
+    fn avoid(&mut self, slope: f64, function: impl Fn(Vec3) -> Vec3) {
+        let nearest = (1.0 + self.sums[0].max(self.sums[1])) * slope * self.radius;
+        if function(self.centre).length_squared() > nearest * nearest {
+            return;
+        }
         let values = self.points.map(function);
         let lengths = values.map(Vec3::length);
         // About an apex, functions of direction are smooth in distance.
@@ -49,25 +62,26 @@ impl Axes {
 /// there.
 pub fn decays(corners: &[Vec3; 4], normal: Vec3, target: &[Vec3], edges: &[Edge]) -> [f64; 2] {
     let mut axes = Axes::new(corners);
-    let centre = corners.iter().copied().sum::<Vec3>() / corners.len() as f64;
-    let square = corners.iter().map(|v| v.distance_squared(centre)).fold(0.0, f64::max);
+    let centre = axes.centre;
+    let flat = AT * axes.radius;
+    let is_in_plane = |v: Vec3| normal.dot(v - centre).abs() <= flat;
 
     // Keep away from the corners of the target, from those of its sides that are not in the plane, and from the lines of edges.
     let side = |k: usize| [target[k], target[(k + 1) % target.len()]];
-    let is_in_plane = |v: Vec3| normal.dot(v - centre).powi(2) <= AT * AT * square;
     for [from, to] in (0..target.len()).map(side) {
-        axes.avoid(|x| from - x);
+        let is_in_plane = is_in_plane(from) && is_in_plane(to);
+        axes.avoid(1.0, |x| from - x);
         let along = to - from;
         let shares = corners.map(|x| (x - from).dot(along) / along.length_squared());
         let passes_by = shares.iter().any(|s| *s > 0.0) && shares.iter().any(|s| *s < 1.0);
-        if passes_by && !(is_in_plane(from) && is_in_plane(to)) {
+        if passes_by && !is_in_plane {
             let along = along.normalize();
-            axes.avoid(|x| along.cross(from - x));
+            axes.avoid(1.0, |x| along.cross(from - x));
         }
     }
     for edge in edges {
         let along = (edge.to - edge.from).normalize();
-        axes.avoid(|x| along.cross(edge.from - x));
+        axes.avoid(1.0, |x| along.cross(edge.from - x));
     }
 
     // Keep away from where the way to the crossing of an edge and a side, or another edge, has a square of zero: as the heights h of its ends
@@ -82,7 +96,8 @@ pub fn decays(corners: &[Vec3; 4], normal: Vec3, target: &[Vec3], edges: &[Edge]
                 let (v, w) = (from - centre, to - centre);
                 let (along, across) = (v.dot(w), v.cross(w).length());
                 let (one, two) = (w.length_squared() * slopes[0] - along * slopes[1], across * slopes[1]);
-                axes.avoid(|x| Vec3::new(one.dot(x - edge.from), two.dot(x - edge.from), 0.0));
+                let slope = one.length() + two.length();
+                axes.avoid(slope, |x| Vec3::new(one.dot(x - edge.from), two.dot(x - edge.from), 0.0));
             }
         }
     }
