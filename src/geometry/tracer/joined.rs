@@ -141,3 +141,45 @@ fn straighten(outline: &mut Vec<Vec3>) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Mat3, group_by_plane};
+
+    /// Unit squares with these lowest corners, in a turned plane.
+    fn squares(corners: &[(i32, i32)]) -> Vec<Polygon> {
+        let turn = Mat3::from_rotation_x(0.3) * Mat3::from_rotation_y(1.1);
+        let at = |x: i32, y: i32| turn * Vec3::new(f64::from(x), f64::from(y), 2.0);
+        let square = |&(x, y): &(i32, i32)| Polygon::new(vec![at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)]);
+        corners.iter().map(|corner| square(corner).expect("a square")).collect()
+    }
+
+    /// Number, corners and area of what comes of them.
+    fn found(polygons: &[Polygon]) -> Vec<(usize, usize, f64)> {
+        let all: Vec<&Polygon> = polygons.iter().collect();
+        let chosen: Vec<usize> = (0..all.len()).collect();
+        let joined = joined(&all, &group_by_plane(&all), &chosen);
+        joined.iter().map(|(id, p)| (*id, p.vertices().len(), (p.area() * 1e9).round() / 1e9)).collect()
+    }
+
+    #[test]
+    fn what_makes_a_convex_polygon_is_joined_and_nothing_else() {
+        let grid: Vec<(i32, i32)> = (0..6).map(|k| (k % 3, k / 3)).collect();
+        assert_eq!(found(&squares(&grid)), [(0, 4, 6.0)]);
+        // Two apart, one of them of two squares.
+        assert_eq!(found(&squares(&[(5, 0), (0, 0), (1, 0)])), [(0, 4, 1.0), (1, 4, 2.0)]);
+        // An L, a frame around a hole, and squares that touch in a corner.
+        let frame: Vec<(i32, i32)> = (0..9).filter(|k| *k != 4).map(|k| (k % 3, k / 3)).collect();
+        for apart in [vec![(0, 0), (1, 0), (0, 1)], frame, vec![(0, 0), (1, 1)]] {
+            let expected: Vec<_> = (0..apart.len()).map(|k| (k, 4, 1.0)).collect();
+            assert_eq!(found(&squares(&apart)), expected);
+        }
+        // One square twice: who runs along its edges is not clear.
+        assert_eq!(found(&squares(&[(0, 0), (1, 0), (1, 0)])).len(), 3);
+        // Back to back, they are two sides.
+        let mut two = squares(&[(0, 0), (1, 0)]);
+        two[1] = two[1].flipped();
+        assert_eq!(found(&two), [(0, 4, 1.0), (1, 4, 1.0)]);
+    }
+}

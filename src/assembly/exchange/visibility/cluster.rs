@@ -344,10 +344,14 @@ mod tests {
     /// Rays hunt for a clear pair with a hidden part, and for an unlinked one that sees something.
     #[test]
     fn no_ray_contradicts_a_cluster() {
-        for (name, patch_size) in
-            [("corner-box", 0.25), ("two-rooms", 0.7), ("cornell-box", 0.4), ("spherical-crater", 10.0)]
-        {
-            let scene = (gallery::find(name).expect("a scene of the gallery").build)();
+        let of_gallery = |name: &str| (gallery::find(name).expect("a scene of the gallery").build)();
+        for (name, patch_size, scene) in [
+            ("corner-box", 0.25, of_gallery("corner-box")),
+            ("two-rooms", 0.7, of_gallery("two-rooms")),
+            ("cornell-box", 0.4, of_gallery("cornell-box")),
+            ("spherical-crater", 10.0, of_gallery("spherical-crater")),
+            ("a facet a patch", 10.0, gallery::floating_block(6).expect("a scene")),
+        ] {
             let bundles = Bundles::new(&scene, Resolution { patch_size, n_directions: 1 }).expect("a resolution");
             for turn in [Mat3::IDENTITY, Mat3::from_rotation_x(0.3) * Mat3::from_rotation_z(1.1)] {
                 let turned =
