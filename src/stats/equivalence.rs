@@ -115,7 +115,8 @@ pub fn equivalence_samples(
     if !(variance.is_finite() && variance >= 0.0) {
         return Err(EquivalenceError::Variance { value: variance });
     }
-    if !(true_difference.abs() < margin) {
+    let is_within = true_difference.abs() < margin;
+    if !is_within {
         return Err(EquivalenceError::OutsideMargin { difference: true_difference, margin });
     }
     let suffices = |n: u64| equivalence_power(true_difference, (variance / n as f64).sqrt(), margin, alpha) >= power;

@@ -103,9 +103,11 @@ fn durbin_matrix(d: f64, n: usize) -> f64 {
     for (i, row) in matrix.iter_mut().enumerate() {
         row.iter_mut().take(i + 2).for_each(|entry| *entry = 1.0);
     }
-    for i in 0..size {
-        matrix[i][0] -= h.powi(i as i32 + 1);
-        matrix[size - 1][i] -= h.powi((size - i) as i32);
+    for (i, row) in matrix.iter_mut().enumerate() {
+        row[0] -= h.powi(i as i32 + 1);
+    }
+    for (i, entry) in matrix[size - 1].iter_mut().enumerate() {
+        *entry -= h.powi((size - i) as i32);
     }
     matrix[size - 1][0] += (2.0 * h - 1.0).max(0.0).powi(size as i32);
     for (i, row) in matrix.iter_mut().enumerate() {

@@ -155,8 +155,17 @@ fn equivalence_is_shown_everywhere_or_not_at_all() {
     // The smallest margin is the one that just holds.
     let least = equivalent_blocks(&reference(), &mean, &variance, verdict.smallest_margin, 1e-4);
     assert!((least.p_value / 1e-4 - 1.0).abs() < 1e-9, "{least:?}");
+    assert_eq!(verdict.to_string(), format!("equal within 0.1 % (p = {:.1e})", verdict.p_value));
     // A margin below the error bars shows nothing, nor do samples that are wrong in one place.
-    assert!(!equivalent_blocks(&reference(), &mean, &variance, 1e-4, 1e-4).holds);
+    let hasty = equivalent_blocks(&reference(), &mean, &variance, 1e-4, 1e-4);
+    assert!(!hasty.holds && hasty.smallest_margin < 1e-3);
+    let text = hasty.to_string();
+    assert!(text.starts_with("not shown to be equal within 0.01 % (p = "), "{text}");
+    // What it says could be shown is rounded up, and so can be.
+    let (_, said) = text.rsplit_once("within ").unwrap();
+    let said: f64 = said.trim_end_matches(" %").parse().unwrap();
+    let next = equivalent_blocks(&reference(), &mean, &variance, said / 100.0, 1e-4);
+    assert!(next.holds && said / 100.0 < 1.1 * hasty.smallest_margin, "{text}");
     mean.set(17, 2, reference().get(17, 2) + 0.05);
     let verdict = equivalent_blocks(&reference(), &mean, &variance, 1e-3, 1e-4);
     assert!(!verdict.holds && verdict.worst_at == (17, 2), "{verdict:?}");
