@@ -3,9 +3,11 @@
 //! Two one-sided tests (Schuirmann 1987) refute that the difference is above the margin and that it is below its negative. What is claimed
 //! then is wrong with probability alpha at most, and too few samples make it harder to claim, not easier.
 
-use super::{Moments, WelchError, normal_critical, normal_tail, student_critical, student_tail, welch_error};
+use super::power::fewest_samples;
+use super::{
+    Moments, PowerError, WelchError, normal_critical, normal_tail, student_critical, student_tail, welch_error,
+};
 use serde::Serialize;
-use thiserror::Error;
 
 /// The outcome of the tests.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -19,17 +21,6 @@ pub struct Equivalence {
     pub margin: f64,
     /// Probability of a difference at least this small, were the true one at the margin. Small means equal.
     pub p_value: f64,
-}
-
-/// Why no number of samples suffices.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-pub enum EquivalenceError {
-    #[error("a true difference of {difference:e} can never be shown to be within {margin:e}")]
-    OutsideMargin { difference: f64, margin: f64 },
-    #[error("{name} is {value:e}, must be in (0, 1)")]
-    Probability { name: &'static str, value: f64 },
-    #[error("the variance is {value:e}, must be finite and not negative")]
-    Variance { value: f64 },
 }
 
 impl Equivalence {
@@ -106,39 +97,12 @@ pub fn equivalence_samples(
     margin: f64,
     alpha: f64,
     power: f64,
-) -> Result<u64, EquivalenceError> {
-    for (name, value) in [("the significance", alpha), ("the power", power)] {
-        if !(value > 0.0 && value < 1.0) {
-            return Err(EquivalenceError::Probability { name, value });
-        }
-    }
-    if !(variance.is_finite() && variance >= 0.0) {
-        return Err(EquivalenceError::Variance { value: variance });
-    }
+) -> Result<u64, PowerError> {
     let is_within = true_difference.abs() < margin;
     if !is_within {
-        return Err(EquivalenceError::OutsideMargin { difference: true_difference, margin });
+        return Err(PowerError::OutsideMargin { difference: true_difference, margin });
     }
-    let suffices = |n: u64| equivalence_power(true_difference, (variance / n as f64).sqrt(), margin, alpha) >= power;
-    if variance == 0.0 {
-        return Ok(1);
-    }
-
-    // Power rises with n: double until it suffices, then halve the gap.
-    let mut high = 1;
-    while !suffices(high) && high < 1 << 62 {
-        high *= 2;
-    }
-    let mut low = high / 2;
-    while high - low > 1 {
-        let middle = low + (high - low) / 2;
-        if suffices(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    Ok(high)
+    fewest_samples(variance, alpha, power, |error| equivalence_power(true_difference, error, margin, alpha))
 }
 
 /// How many standard errors there are to the edge; an exact number on the edge or beyond it is infinitely far beyond.

@@ -2,10 +2,11 @@
 
 use etendue::sampling::{Stream, Streams};
 use etendue::stats::{
-    ConfidenceError, EmpiricalBernstein, EquivalenceError, Moments, NormalMixture, UniformityError, benjamini_hochberg,
-    benjamini_yekutieli, binomial_interval, binomial_tail, binomial_test, equivalence_of_means, equivalence_power,
-    equivalence_samples, equivalence_test, holm, kolmogorov_tail, normal_critical, normal_tail, p_value_histogram,
-    relative_equivalence, sidak, student_critical, student_tail, uniformity_test,
+    ConfidenceError, EmpiricalBernstein, Moments, NormalMixture, PowerError, UniformityError, benjamini_hochberg,
+    benjamini_yekutieli, binomial_interval, binomial_tail, binomial_test, detection_power, detection_samples,
+    equivalence_of_means, equivalence_power, equivalence_samples, equivalence_test, holm, kolmogorov_tail,
+    normal_critical, normal_tail, p_value_histogram, relative_equivalence, sidak, sidak_level, student_critical,
+    student_tail, two_sided_p, uniformity_test,
 };
 
 /// Significance of every random test here.
@@ -259,10 +260,29 @@ fn the_power_said_before_is_the_power_had() {
     assert_eq!(equivalence_samples(0.0, 1.0, 0.1, 0.01, 0.8), Ok(exact.ceil() as u64));
     assert_eq!(equivalence_samples(0.0, 0.0, 0.1, 0.01, 0.8), Ok(1));
     assert_eq!(equivalence_power(0.0, 1.0, 0.1, 0.01), 0.0);
-    let outside = EquivalenceError::OutsideMargin { difference: 0.1, margin: 0.1 };
+    let outside = PowerError::OutsideMargin { difference: 0.1, margin: 0.1 };
     assert_eq!(equivalence_samples(0.1, 1.0, 0.1, 0.01, 0.8), Err(outside));
-    assert!(matches!(equivalence_samples(0.0, 1.0, 0.1, 0.0, 0.8), Err(EquivalenceError::Probability { .. })));
-    assert!(matches!(equivalence_samples(0.0, -1.0, 0.1, 0.1, 0.8), Err(EquivalenceError::Variance { .. })));
+    assert!(matches!(equivalence_samples(0.0, 1.0, 0.1, 0.0, 0.8), Err(PowerError::Probability { .. })));
+    assert!(matches!(equivalence_samples(0.0, -1.0, 0.1, 0.1, 0.8), Err(PowerError::Variance { .. })));
+}
+
+#[test]
+fn the_budget_said_before_finds_the_bug() {
+    // A mean off by 0.1 % of 1, numbers of standard deviation 0.5, one comparison of 300 together at 1e-6.
+    let (difference, variance, alpha) = (1e-3, 0.25, sidak_level(1e-6, 300));
+    let n = detection_samples(difference, variance, alpha, 0.9).unwrap();
+    let closed = (normal_critical(0.5 * alpha) + normal_critical(0.1)).powi(2) * variance / difference / difference;
+    assert_relative(n as f64, closed, 1e-5);
+    let error = (variance / n as f64).sqrt();
+    let mut stream = Streams::new(151, "budget").stream(0, 0);
+    let found = (0..4000).filter(|_| two_sided_p((difference + error * normal(&mut stream)) / error) < alpha).count();
+    assert!(binomial_test(found as u64, 4000, 0.9).p_value > ALPHA, "{found} of 4000");
+    // Without a difference the test finds what it finds by chance.
+    assert_relative(detection_power(0.0, error, 0.01), 0.01, 1e-12);
+    assert_eq!(detection_samples(0.1, 0.0, 0.01, 0.9), Ok(1));
+    assert!(matches!(detection_samples(0.0, 1.0, 0.01, 0.9), Err(PowerError::NoDifference { .. })));
+    assert!(matches!(detection_samples(0.1, 1.0, 0.01, 1.0), Err(PowerError::Probability { .. })));
+    assert!(matches!(detection_samples(0.1, f64::NAN, 0.01, 0.5), Err(PowerError::Variance { .. })));
 }
 
 // ---- confidence sequences
