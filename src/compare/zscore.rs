@@ -2,7 +2,7 @@
 
 use super::norm::check_shapes;
 use crate::linalg::Block;
-use crate::stats::{critical_z, sidak, two_sided_p, z_score};
+use crate::stats::{NormalMixture, critical_z, sidak, sidak_level, two_sided_p, z_score};
 use serde::Serialize;
 
 /// What rounding may leave between two exact computations of one column, relative to its largest entry: some thousand unknowns times
@@ -51,21 +51,69 @@ struct Comparison {
 /// # Panics
 /// If the shapes differ.
 pub fn compare_blocks(reference: &Block, mean: &Block, variance_of_mean: &Block, alpha: f64) -> ZVerdict {
-    let (mut worst_z, mut worst_at) = (0.0, (0, 0));
-    let (mut n_comparisons, mut n_exact) = (0, 0);
-    comparisons(reference, mean, variance_of_mean, |row, column, Comparison { z, is_exact }| {
-        n_exact += usize::from(is_exact);
-        n_comparisons += usize::from(!is_exact);
-        if z.abs() > worst_z {
-            (worst_z, worst_at) = (z.abs(), (row, column));
-        }
-    });
+    let worst = Worst::of(reference, mean, variance_of_mean);
+    worst.verdict(alpha, two_sided_p(worst.z), critical_z(alpha, worst.n_comparisons))
+}
 
-    // Ask how likely the worst of so many is; two exact numbers that differ leave no doubt.
-    let p_value = if worst_z == f64::INFINITY { 0.0 } else { sidak(two_sided_p(worst_z), n_comparisons) };
-    let p_value = if n_comparisons == 0 && worst_z == 0.0 { 1.0 } else { p_value };
-    let critical_z = critical_z(alpha, n_comparisons);
-    ZVerdict { worst_z, worst_at, n_comparisons, n_exact, p_value, critical_z, agrees: p_value >= alpha }
+/// [`compare_blocks`] for whoever looks while it runs: of all looks at an estimate that grows, one or more disagree with probability alpha at most,
+/// the level of the sequence.
+///
+/// `n_samples` is how many each mean rests on at this look. The p-value is that of the worst entry by the sequence, corrected for the entries and valid at all
+/// times together; until the sequence starts, nothing but exact entries can disagree.
+///
+/// # Panics
+/// If the shapes differ.
+pub fn compare_blocks_anytime(
+    reference: &Block,
+    mean: &Block,
+    variance_of_mean: &Block,
+    n_samples: u64,
+    sequence: &NormalMixture,
+) -> ZVerdict {
+    let worst = Worst::of(reference, mean, variance_of_mean);
+    let critical_z = sequence.at_level(sidak_level(sequence.alpha(), worst.n_comparisons)).critical_z(n_samples);
+    worst.verdict(sequence.alpha(), sequence.p_value_of_z(worst.z, n_samples), critical_z)
+}
+
+/// The entry that is farthest off.
+struct Worst {
+    /// Unsigned.
+    z: f64,
+    at: (usize, usize),
+    n_comparisons: usize,
+    n_exact: usize,
+}
+
+impl Worst {
+    fn of(reference: &Block, mean: &Block, variance_of_mean: &Block) -> Self {
+        let mut worst = Self { z: 0.0, at: (0, 0), n_comparisons: 0, n_exact: 0 };
+        comparisons(reference, mean, variance_of_mean, |row, column, Comparison { z, is_exact }| {
+            worst.n_exact += usize::from(is_exact);
+            worst.n_comparisons += usize::from(!is_exact);
+            if z.abs() > worst.z {
+                (worst.z, worst.at) = (z.abs(), (row, column));
+            }
+        });
+        worst
+    }
+
+    /// Asks how likely the worst of so many is, given how likely it is alone; two exact numbers that differ leave no doubt.
+    fn verdict(&self, alpha: f64, p_alone: f64, critical_z: f64) -> ZVerdict {
+        let p_value = match (self.z, self.n_comparisons) {
+            (f64::INFINITY, _) => 0.0,
+            (_, 0) => 1.0,
+            (_, n) => sidak(p_alone, n),
+        };
+        ZVerdict {
+            worst_z: self.z,
+            worst_at: self.at,
+            n_comparisons: self.n_comparisons,
+            n_exact: self.n_exact,
+            p_value,
+            critical_z,
+            agrees: p_value >= alpha,
+        }
+    }
 }
 
 /// The z-score of every entry, as [`compare_blocks`] has it and with its sign: a map of where an estimate is too bright and where too dark.

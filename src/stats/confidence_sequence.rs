@@ -4,7 +4,7 @@
 //! logarithm. A confidence *sequence* misses it at any time at all with probability alpha at most. The price is a width some 1.5 to 2 times that of
 //! an interval for one look.
 
-use super::Moments;
+use super::{Moments, z_score};
 use serde::Serialize;
 use thiserror::Error;
 
@@ -35,14 +35,41 @@ impl NormalMixture {
         Self { alpha, mixture, first: first.max(2) }
     }
 
-    /// Half the width of the interval around the mean of these numbers; infinite before the sequence starts.
-    pub fn half_width(&self, sample: &Moments) -> f64 {
-        if sample.n() < self.first {
+    /// Family-wise or not, the probability of ever missing.
+    pub fn alpha(&self) -> f64 {
+        self.alpha
+    }
+
+    /// The same sequence at another level.
+    pub fn at_level(self, alpha: f64) -> Self {
+        Self { alpha, ..self }
+    }
+
+    /// Half the width of the interval in standard errors of the mean of n numbers: what a |z| may come to at that time. Infinite before the
+    /// sequence starts.
+    pub fn critical_z(&self, n: u64) -> f64 {
+        if n < self.first {
             return f64::INFINITY;
         }
-        let n = sample.n() as f64;
-        let growth = n * self.mixture + 1.0;
-        (sample.variance() * 2.0 * growth / (n * n * self.mixture) * (growth.sqrt() / self.alpha).ln()).sqrt()
+        let spread = n as f64 * self.mixture;
+        let growth = spread + 1.0;
+        (2.0 * growth / spread * (growth.sqrt() / self.alpha).ln()).sqrt()
+    }
+
+    /// The level at which the sequence ends at this z-score of n numbers, at most 1: a p-value that is valid whenever one looks, and so is the
+    /// least of all looks.
+    pub fn p_value_of_z(&self, z: f64, n: u64) -> f64 {
+        if n < self.first {
+            return 1.0;
+        }
+        let spread = n as f64 * self.mixture;
+        let growth = spread + 1.0;
+        (growth.sqrt() * (-0.5 * z * z * spread / growth).exp()).min(1.0)
+    }
+
+    /// Half the width of the interval around the mean of these numbers.
+    pub fn half_width(&self, sample: &Moments) -> f64 {
+        if sample.n() < self.first { f64::INFINITY } else { self.critical_z(sample.n()) * sample.standard_error() }
     }
 
     /// The interval, lowest and highest.
@@ -51,20 +78,12 @@ impl NormalMixture {
         [sample.mean() - half, sample.mean() + half]
     }
 
-    /// A p-value of the hypothesis that the mean is this, valid whenever one looks: the smallest alpha whose interval of the same ρ misses it, at
-    /// most 1. Also the least one so far is valid.
+    /// [`p_value_of_z`](Self::p_value_of_z) of the hypothesis that these numbers have this mean.
     pub fn p_value(&self, sample: &Moments, hypothesis: f64) -> f64 {
         if sample.n() < self.first {
             return 1.0;
         }
-        let n = sample.n() as f64;
-        let growth = n * self.mixture + 1.0;
-        let apart = sample.mean() - hypothesis;
-        if apart == 0.0 {
-            return 1.0;
-        }
-        let exponent = n * n * apart * apart * self.mixture / (2.0 * sample.variance() * growth);
-        (growth.sqrt() * (-exponent).exp()).min(1.0)
+        self.p_value_of_z(z_score(sample.mean(), hypothesis, sample.variance_of_mean()), sample.n())
     }
 }
 

@@ -4,7 +4,7 @@
 //! test: 10⁴ runs of each kind, 10⁵ with `ETENDUE_LARGE=1`. Kinds that promise 1e-3 *at most* are tested from above. Where a verdict is
 //! asymptotic, the runs are long enough for its own rate to be 1e-3 within a tenth or two.
 
-use etendue::compare::{compare_blocks, equivalent_blocks, p_values, pooled};
+use etendue::compare::{compare_blocks, compare_blocks_anytime, equivalent_blocks, p_values, pooled};
 use etendue::estimator::{Estimator, Score, Truth, estimate};
 use etendue::linalg::Block;
 use etendue::sampling::{Stream, Streams};
@@ -301,4 +301,28 @@ fn sequences_looked_at_all_the_time() {
         [missed, refuted, !(low <= 1.0 / 3.0 && 1.0 / 3.0 <= high)]
     });
     (0..3).for_each(|k| alarms.assert_at_most_promised(k));
+}
+
+#[test]
+fn estimates_looked_at_all_the_time() {
+    let kinds = ["blocks at any time", "blocks looked at once"];
+    let sequence = NormalMixture::new(SIGNIFICANCE, 200, 400);
+    let reference = Block::from_fn(3, 1, |_, _| 0.5);
+    let alarms = Alarms::of(kinds, |stream| {
+        let mut samples = [Moments::default(); 3];
+        let [mut at_any_time, mut naively] = [false; 2];
+        for n_samples in 1..=800 {
+            samples.iter_mut().for_each(|sample| sample.push(stream.uniform()));
+            if n_samples % 20 == 0 {
+                let mean = Block::from_fn(3, 1, |r, _| samples[r].mean());
+                let variance = Block::from_fn(3, 1, |r, _| samples[r].variance_of_mean());
+                at_any_time |= !compare_blocks_anytime(&reference, &mean, &variance, n_samples, &sequence).agrees;
+                naively |= n_samples >= 200 && !compare_blocks(&reference, &mean, &variance, SIGNIFICANCE).agrees;
+            }
+        }
+        [at_any_time, naively]
+    });
+    alarms.assert_at_most_promised(0);
+    // Verdicts for one look are not for thirty: that is what the sequence is for.
+    assert!(alarms.counts[1] > 3 * u64::from(alarms.n_runs) / 1000, "{} of {}", alarms.counts[1], alarms.n_runs);
 }
