@@ -11,7 +11,8 @@ use std::fmt;
 pub struct EquivalenceVerdict {
     /// What every entry must stay within, relative to the largest reference of its column.
     pub margin: f64,
-    /// The largest p-value of any entry: probability of entries all this close, were one of them off by the margin. 1 where one is not a number.
+    /// The largest p-value of any entry: probability of entries all this close, were one of them off by the margin. 1 where one is
+    /// not a number.
     pub p_value: f64,
     /// Row and column of it.
     pub worst_at: (usize, usize),
@@ -56,9 +57,10 @@ impl fmt::Display for Percent {
 
 /// Tests whether a mean is within ± margin · max |reference of the column| of an exact reference, in every entry at once.
 ///
-/// All entries must pass the two one-sided tests of [`stats::equivalence_test`](crate::stats::equivalence_test), each at the full `alpha`:
-/// the claim is wrong with probability alpha at most, whatever their dependence, and takes no correction for their number (Berger 1982). The scores
-/// are taken as normal and the variances as known, as [`compare_blocks`](super::compare_blocks) takes them. Nothing to compare is nothing shown.
+/// All entries must pass the two one-sided tests of [`stats::equivalence_test`](crate::stats::equivalence_test), each at the full
+/// `alpha`: the claim is wrong with probability alpha at most, whatever their dependence, and takes no correction for their number
+/// (Berger 1982). The scores are taken as normal and the variances as known, as [`compare_blocks`](super::compare_blocks) takes
+/// them. Nothing to compare is nothing shown.
 ///
 /// # Panics
 /// If the shapes differ.

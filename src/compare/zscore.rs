@@ -5,8 +5,8 @@ use crate::linalg::Block;
 use crate::stats::{NormalMixture, critical_z, sidak, sidak_level, two_sided_p, z_score};
 use serde::Serialize;
 
-/// What rounding may leave between two exact computations of one column, relative to its largest entry: some thousand unknowns times
-/// 2⁻⁵³, the accuracy that elimination keeps on a well-conditioned I − K.
+/// What rounding may leave between two exact computations of one column, relative to its largest entry: some thousand unknowns
+/// times 2⁻⁵³, the accuracy that elimination keeps on a well-conditioned I − K.
 pub const ROUNDING_TOLERANCE: f64 = 1e-12;
 
 /// The outcome of many comparisons, corrected for their number.
@@ -38,15 +38,15 @@ struct Comparison {
 
 /// Holds a mean with error bars against an exact reference, entry by entry, at family-wise significance `alpha`.
 ///
-/// z = (mean − reference) / √(variance_of_mean + rounding²), with rounding = [`ROUNDING_TOLERANCE`] times the largest reference of the column.
-/// Entries whose variance is exactly zero are compared exactly, to that rounding; anything that is not a number disagrees, the
-/// variance of fewer than two samples included.
+/// z = (mean − reference) / √(variance_of_mean + rounding²), with rounding = [`ROUNDING_TOLERANCE`] times the largest reference of
+/// the column. Entries whose variance is exactly zero are compared exactly, to that rounding; anything that is not a number
+/// disagrees, the variance of fewer than two samples included.
 ///
 /// The scores are taken as normal and the variances as known, which is asymptotic in the number n of samples behind an entry. At a
-/// critical z, false alarms are more frequent than alpha by about exp(z⁴/4n) for variances being estimated, and by 1 + (γ z³)²/18n for scores of
-/// skewness γ: 1.4 times measured for fifteen entries, some of which score once in four samples, at n = 512 and alpha = 1e-3. For
-/// alpha = 1e-6 and thousands of entries have some thousands of samples; more where scores are rare and large, see
-/// [`SCORES_A_COMPARISON`](super::SCORES_A_COMPARISON).
+/// critical z, false alarms are more frequent than alpha by about exp(z⁴/4n) for variances being estimated, and by 1 + (γ z³)²/18n
+/// for scores of skewness γ: 1.4 times measured for fifteen entries, some of which score once in four samples, at n = 512 and
+/// alpha = 1e-3. For alpha = 1e-6 and thousands of entries have some thousands of samples; more where scores are rare and large,
+/// see [`SCORES_A_COMPARISON`](super::SCORES_A_COMPARISON).
 ///
 /// # Panics
 /// If the shapes differ.
@@ -55,11 +55,11 @@ pub fn compare_blocks(reference: &Block, mean: &Block, variance_of_mean: &Block,
     worst.verdict(alpha, two_sided_p(worst.z), critical_z(alpha, worst.n_comparisons))
 }
 
-/// [`compare_blocks`] for whoever looks while it runs: of all looks at an estimate that grows, one or more disagree with probability alpha at most,
-/// the level of the sequence.
+/// [`compare_blocks`] for whoever looks while it runs: of all looks at an estimate that grows, one or more disagree with
+/// probability alpha at most, the level of the sequence.
 ///
-/// `n_samples` is how many each mean rests on at this look. The p-value is that of the worst entry by the sequence, corrected for the entries and valid at all
-/// times together; until the sequence starts, nothing but exact entries can disagree.
+/// `n_samples` is how many each mean rests on at this look. The p-value is that of the worst entry by the sequence, corrected for
+/// the entries and valid at all times together; until the sequence starts, nothing but exact entries can disagree.
 ///
 /// # Panics
 /// If the shapes differ.
@@ -116,8 +116,8 @@ impl Worst {
     }
 }
 
-/// The z-score of every entry, as [`compare_blocks`] has it and with its sign: a map of where an estimate is too bright and where too dark.
-/// 0 where both sides are exact and equal to rounding, ±∞ where they differ or one is not a number.
+/// The z-score of every entry, as [`compare_blocks`] has it and with its sign: a map of where an estimate is too bright and where
+/// too dark. 0 where both sides are exact and equal to rounding, ±∞ where they differ or one is not a number.
 ///
 /// # Panics
 /// If the shapes differ.

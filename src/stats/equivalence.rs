@@ -1,7 +1,7 @@
 //! Positive verdicts: not "no difference was found" but "the difference is below the margin".
 //!
-//! Two one-sided tests (Schuirmann 1987) refute that the difference is above the margin and that it is below its negative. What is claimed
-//! then is wrong with probability alpha at most, and too few samples make it harder to claim, not easier.
+//! Two one-sided tests (Schuirmann 1987) refute that the difference is above the margin and that it is below its negative. What is
+//! claimed then is wrong with probability alpha at most, and too few samples make it harder to claim, not easier.
 
 use super::power::fewest_samples;
 use super::{
@@ -38,9 +38,9 @@ impl Equivalence {
 
 /// Tests whether a difference with this standard error is within ± margin.
 ///
-/// Exact for a normal difference whose standard error is known (infinite degrees of freedom) or is an independent χ² with these degrees
-/// of freedom; asymptotic otherwise, as the z and t tests are. The two tests need no correction for being two (Berger 1982). A margin that is not
-/// above zero never holds. Nor does one that is not a number.
+/// Exact for a normal difference whose standard error is known (infinite degrees of freedom) or is an independent χ² with these
+/// degrees of freedom; asymptotic otherwise, as the z and t tests are. The two tests need no correction for being two (Berger
+/// 1982). A margin that is not above zero never holds. Nor does one that is not a number.
 pub fn equivalence_test(difference: f64, standard_error: f64, n_degrees_of_freedom: f64, margin: f64) -> Equivalence {
     let t = slack(margin - difference.abs(), standard_error);
     let p_value = student_tail(t, n_degrees_of_freedom);
@@ -53,11 +53,12 @@ pub fn equivalence_of_means(a: &Moments, b: &Moments, margin: f64) -> Equivalenc
     equivalence_test(a.mean() - b.mean(), standard_error, n_degrees_of_freedom, margin)
 }
 
-/// Tests whether a value is within (1 ± margin) times a reference, both with their variances, independent of each other, and normal.
+/// Tests whether a value is within (1 ± margin) times a reference, both with their variances, independent of each other, and
+/// normal.
 ///
-/// By Fieller's argument (1954): value − (1 − margin) · reference is normal with variance v + (1 − margin)² v_ref and must be above zero,
-/// (1 + margin) · reference − value likewise. Exact, and no quotient is ever taken as normal; for a negative reference the signs turn over.
-/// `difference` is value/reference − 1 and `standard_error` that of the delta method, for show.
+/// By Fieller's argument (1954): value − (1 − margin) · reference is normal with variance v + (1 − margin)² v_ref and must be
+/// above zero, (1 + margin) · reference − value likewise. Exact, and no quotient is ever taken as normal; for a negative reference
+/// the signs turn over. `difference` is value/reference − 1 and `standard_error` that of the delta method, for show.
 pub fn relative_equivalence(
     [value, variance]: [f64; 2],
     [reference, reference_variance]: [f64; 2],
@@ -75,8 +76,8 @@ pub fn relative_equivalence(
     Equivalence { difference: ratio - 1.0, standard_error, n_degrees_of_freedom: f64::INFINITY, margin, p_value }
 }
 
-/// Probability that [`equivalence_test`] will hold at level alpha, before there is a sample: for a normal difference of known standard error and
-/// this true value.
+/// Probability that [`equivalence_test`] will hold at level alpha, before there is a sample: for a normal difference of known
+/// standard error and this true value.
 pub fn equivalence_power(true_difference: f64, standard_error: f64, margin: f64, alpha: f64) -> f64 {
     let room = margin - normal_critical(alpha) * standard_error;
     if room <= 0.0 {

@@ -16,7 +16,8 @@ pub enum PowerError {
     Variance { value: f64 },
 }
 
-/// Probability that a two-sided z-test at significance alpha finds a mean to be off that is off by this much: of |Z + d/σ| > z_{α/2}.
+/// Probability that a two-sided z-test at significance alpha finds a mean to be off that is off by this much: of |Z + d/σ| >
+/// z_{α/2}.
 ///
 /// For one comparison of `n` use [`sidak_level`](super::sidak_level) as alpha. Exact for a normal mean of known standard error.
 pub fn detection_power(difference: f64, standard_error: f64, alpha: f64) -> f64 {
@@ -24,8 +25,8 @@ pub fn detection_power(difference: f64, standard_error: f64, alpha: f64) -> f64 
     normal_tail(critical - shift) + normal_tail(critical + shift)
 }
 
-/// Samples that a two-sided z-test needs to find a mean that is off by `difference` with probability `power`, for numbers of this variance: about
-/// (z_{α/2} + z_{1−power})² variance/difference².
+/// Samples that a two-sided z-test needs to find a mean that is off by `difference` with probability `power`, for numbers of this
+/// variance: about (z_{α/2} + z_{1−power})² variance/difference².
 ///
 /// Where numbers are rare and large the normal approximation may ask for more: some 400 of them that are not zero.
 ///

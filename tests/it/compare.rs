@@ -78,7 +78,7 @@ fn one_wrong_entry_is_found_and_named() {
 #[test]
 fn one_may_look_while_it_runs() {
     let (mut mean, variance) = experiment(&reference(), 6, 0.0);
-    let sequence = NormalMixture::new(1e-6, 50, 100);
+    let sequence = NormalMixture::new(1e-6, 50, 100).unwrap();
     let look = |mean: &Block, n_samples| compare_blocks_anytime(&reference(), mean, &variance, n_samples, &sequence);
     let verdict = look(&mean, 100);
     assert!(verdict.agrees && verdict.p_value > 0.1);
@@ -202,8 +202,8 @@ fn equivalence_is_shown_everywhere_or_not_at_all() {
     assert!(!equivalent_blocks(&Block::zeros(0, 0), &Block::zeros(0, 0), &Block::zeros(0, 0), 1e-3, 0.1).holds);
 }
 
-/// Light that arrives late is dim everywhere: the eighth bounce of a lamp of radiance 1 may have a reference of 1e-4 in every bundle. The largest
-/// of them is no bound of a score, which is 1 when it comes, once in 10⁴ samples.
+/// Light that arrives late is dim everywhere: the eighth bounce of a lamp of radiance 1 may have a reference of 1e-4 in every
+/// bundle. The largest of them is no bound of a score, which is 1 when it comes, once in 10⁴ samples.
 #[test]
 fn late_bounces_are_pooled_until_they_score() {
     let (n_bundles, n_samples, chance) = (60, 100_000, 1e-4);

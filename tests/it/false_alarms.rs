@@ -1,8 +1,8 @@
 //! Verdicts on clean runs: every kind raises false alarms as often as it says.
 //!
-//! Each kind judges runs in which nothing is wrong, at significance 1e-3, and the number of alarms is tested against 1e-3 by the exact binomial
-//! test: 10⁴ runs of each kind, 10⁵ with `ETENDUE_LARGE=1`. Kinds that promise 1e-3 *at most* are tested from above. Where a verdict is
-//! asymptotic, the runs are long enough for its own rate to be 1e-3 within a tenth or two.
+//! Each kind judges runs in which nothing is wrong, at significance 1e-3, and the number of alarms is tested against 1e-3 by the
+//! exact binomial test: 10⁴ runs of each kind, 10⁵ with `ETENDUE_LARGE=1`. Kinds that promise 1e-3 *at most* are tested from
+//! above. Where a verdict is asymptotic, the runs are long enough for its own rate to be 1e-3 within a tenth or two.
 
 use etendue::compare::{compare_blocks, compare_blocks_anytime, equivalent_blocks, p_values, pooled};
 use etendue::estimator::{Estimator, Score, Truth, estimate};
@@ -18,7 +18,8 @@ use std::f64::consts::TAU;
 /// What every verdict is asked for.
 const SIGNIFICANCE: f64 = 1e-3;
 
-/// Significance of each binomial test of false alarms: the thirty or so here make 1 % together, and no alarm in 10⁴ runs is too few.
+/// Significance of each binomial test of false alarms: the thirty or so here make 1 % together, and no alarm in 10⁴ runs is too
+/// few.
 const ALPHA: f64 = 3e-4;
 
 /// Is time no object?
@@ -86,13 +87,14 @@ impl<const K: usize> Alarms<K> {
 
 const N_BUNDLES: usize = 5;
 
-/// Scores that hit once in four times make false alarms of 1.4e-3 at 512 samples, and of 1.1e-3 at 2048: the more runs look, the closer it must be.
+/// Scores that hit once in four times make false alarms of 1.4e-3 at 512 samples, and of 1.1e-3 at 2048: the more runs look, the
+/// closer it must be.
 fn n_samples() -> u64 {
     if is_large() { 2048 } else { 512 }
 }
 
-/// Scores a bundle's known radiance times a number of mean 1, independent between columns: a uniform one, the mean of two, and four once in
-/// four times.
+/// Scores a bundle's known radiance times a number of mean 1, independent between columns: a uniform one, the mean of two, and
+/// four once in four times.
 struct Synthetic;
 
 fn radiance(bundle: usize, column: usize) -> f64 {
@@ -284,7 +286,7 @@ fn corrections_of_many() {
 #[test]
 fn sequences_looked_at_all_the_time() {
     let alarms = Alarms::of(["normal mixture", "always-valid p-value", "empirical Bernstein"], |stream| {
-        let mixture = NormalMixture::new(SIGNIFICANCE, 200, 500);
+        let mixture = NormalMixture::new(SIGNIFICANCE, 200, 500).unwrap();
         let mut bernstein = EmpiricalBernstein::new([0.0, 1.0], SIGNIFICANCE).unwrap();
         let mut sample = Moments::default();
         let [mut missed, mut refuted] = [false; 2];
@@ -306,7 +308,7 @@ fn sequences_looked_at_all_the_time() {
 #[test]
 fn estimates_looked_at_all_the_time() {
     let kinds = ["blocks at any time", "blocks looked at once"];
-    let sequence = NormalMixture::new(SIGNIFICANCE, 200, 400);
+    let sequence = NormalMixture::new(SIGNIFICANCE, 200, 400).unwrap();
     let reference = Block::from_fn(3, 1, |_, _| 0.5);
     let alarms = Alarms::of(kinds, |stream| {
         let mut samples = [Moments::default(); 3];

@@ -14,8 +14,8 @@ pub fn regularised_incomplete_beta(a: f64, b: f64, x: f64) -> f64 {
 /// I_x(a, b) of x and its complement 1 − x, both given, so that neither loses digits where it is small.
 ///
 /// Relative error below 1e-12 for a, b from ½ to 10¹⁰, down to the smallest normal number. x itself must be that sure: a tail
-/// I magnifies its relative error by up to √(2 (a + b) ln 1/I). Cost O(√(a + b)) near the bulk of the distribution, a few dozen steps
-/// elsewhere. NaN for what is not a number.
+/// I magnifies its relative error by up to √(2 (a + b) ln 1/I). Cost O(√(a + b)) near the bulk of the distribution, a few dozen
+/// steps elsewhere. NaN for what is not a number.
 pub fn regularised_incomplete_beta_of(a: f64, b: f64, [x, complement]: [f64; 2]) -> f64 {
     if x <= 0.0 {
         0.0
@@ -28,8 +28,8 @@ pub fn regularised_incomplete_beta_of(a: f64, b: f64, [x, complement]: [f64; 2])
     }
 }
 
-/// I_x(a, b) = xᵃ (1 − x)ᵇ / B(a, b) · 1/(b₀ + a₁/(b₁ + a₂/(b₂ + …))) for x < (a + 1)/(a + b + 2): the even part of DLMF 8.17.22, whose
-/// terms hold x only beside a − (a + b) x (Didonato & Morris 1992, their equation 9).
+/// I_x(a, b) = xᵃ (1 − x)ᵇ / B(a, b) · 1/(b₀ + a₁/(b₁ + a₂/(b₂ + …))) for x < (a + 1)/(a + b + 2): the even part of DLMF 8.17.22,
+/// whose terms hold x only beside a − (a + b) x (Didonato & Morris 1992, their equation 9).
 fn fraction(a: f64, b: f64, x: f64, complement: f64) -> f64 {
     let lack = -excess(a, b, x, complement);
     let denominator = |m: f64| {
