@@ -4,24 +4,25 @@ use crate::linalg::Block;
 
 /// Expected scores that one comparison rests on.
 ///
-/// A mean of λ scores of one size, over its own error bar, has heavier tails than a normal number. By sums of Poisson's terms, |z| exceeds
-/// 3.3, 4, 5 and 6 more often than promised by the factors 1.3, 1.6, 3.8 and 15 at λ = 400; by 1.1, 1.3, 1.9 and 4.9 at λ = 1000; by 1.0,
-/// 1.0, 1.1 and 1.3 at λ = 10⁴.
+/// A mean of λ scores of one size, over its own error bar, has heavier tails than a normal number. By sums of Poisson's terms, |z|
+/// exceeds 3.3, 4, 5 and 6 more often than promised by the factors 1.3, 1.6, 3.8 and 15 at λ = 400; by 1.1, 1.3, 1.9 and 4.9 at λ
+/// = 1000; by 1.0, 1.0, 1.1 and 1.3 at λ = 10⁴.
 pub const SCORES_A_COMPARISON: f64 = 400.0;
 
 /// Neighbouring entries joined until each comparison rests on [`SCORES_A_COMPARISON`] expected scores: one column of weighted means
 /// for the reference, the estimate and its variance.
 ///
-/// A random walk that finds a small lamp scores rarely and much: an entry of reference value m, whose samples score at most b each, expects
-/// at least n m / b samples of n to score. `largest_scores` holds b for each column: what the estimator multiplies its hits with, the
-/// largest emission for a plain walk, *for whatever bounce the column holds*. The column's own largest value is none: light that arrives
-/// late is dim everywhere because it arrives rarely, and each arrival is as bright as ever.
+/// A random walk that finds a small lamp scores rarely and much: an entry of reference value m, whose samples score at most b
+/// each, expects at least n m / b samples of n to score. `largest_scores` holds b for each column: what the estimator multiplies
+/// its hits with, the largest emission for a plain walk, *for whatever bounce the column holds*. The column's own largest value is
+/// none: light that arrives late is dim everywhere because it arrives rarely, and each arrival is as bright as ever.
 ///
-/// Scores of unequal weight count as the equal ones whose sum is as skewed: λ = (Σ w² s)³ / (Σ w³ s)² for s expected scores of weight w.
+/// Scores of unequal weight count as the equal ones whose sum is as skewed: λ = (Σ w² s)³ / (Σ w³ s)² for s expected scores of
+/// weight w.
 ///
-/// Only the reference and the bound decide what is joined, never the sample, so the comparisons stay honest. A column with too few scores
-/// in all has no comparison. Estimates of different rows must be independent. Shapes: all n × columns, one weight a row, one bound a
-/// column.
+/// Only the reference and the bound decide what is joined, never the sample, so the comparisons stay honest. A column with too few
+/// scores in all has no comparison. Estimates of different rows must be independent. Shapes: all n × columns, one weight a row,
+/// one bound a column.
 ///
 /// # Panics
 /// If there is not one bound a column.

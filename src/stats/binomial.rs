@@ -26,8 +26,8 @@ pub fn binomial_test(n_successes: u64, n_trials: u64, rate: f64) -> BinomialTest
     BinomialTest { n_successes, n_trials, upper, lower, p_value: (2.0 * upper.min(lower)).min(1.0) }
 }
 
-/// The rates that [`binomial_test`] at significance alpha does not refute, lowest and highest (Clopper & Pearson 1934): they hold the
-/// true one with probability 1 − α at least.
+/// The rates that [`binomial_test`] at significance alpha does not refute, lowest and highest (Clopper & Pearson 1934): they hold
+/// the true one with probability 1 − α at least.
 pub fn binomial_interval(n_successes: u64, n_trials: u64, alpha: f64) -> [f64; 2] {
     let bisect = |is_below: &dyn Fn(f64) -> bool| {
         let (mut low, mut high) = (0.0, 1.0);

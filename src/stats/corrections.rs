@@ -47,8 +47,8 @@ pub fn holm(p_values: &[f64], alpha: f64) -> Correction {
     correction(adjusted, alpha)
 }
 
-/// Benjamini's and Hochberg's step-up procedure (1995): of the hypotheses that fall, an expected share of at most alpha are true. Where all are
-/// true, that is the probability of any alarm.
+/// Benjamini's and Hochberg's step-up procedure (1995): of the hypotheses that fall, an expected share of at most alpha are true.
+/// Where all are true, that is the probability of any alarm.
 ///
 /// For independent p-values, or positively dependent ones (Benjamini & Yekutieli 2001). Cost O(n log n).
 pub fn benjamini_hochberg(p_values: &[f64], alpha: f64) -> Correction {

@@ -3,8 +3,8 @@
 use super::Moments;
 use serde::Serialize;
 
-/// Count and sums of the powers uⁱ vʲ of pairs' deviations from a centre beside their means, for i, j up to 2 and i = 3 (Pébay 2008), updated
-/// without cancellation.
+/// Count and sums of the powers uⁱ vʲ of pairs' deviations from a centre beside their means, for i, j up to 2 and i = 3 (Pébay
+/// 2008), updated without cancellation.
 ///
 /// Merging in a fixed order gives the same bits whoever computed the parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -93,8 +93,9 @@ impl Covariance {
         (uv / uu.sqrt() / vv.sqrt()).clamp(-1.0, 1.0)
     }
 
-    /// Variance of [`covariance`](Self::covariance): (μ₂₂ − μ₁₁²)/n + (μ₂₀μ₀₂ + μ₁₁²)/(n (n − 1)), with the sample's own moments for the true ones.
-    /// NaN below two pairs. The formula is exact for any distribution (Kendall & Stuart, 13.2), the plug-in to a relative order of 1/√n.
+    /// Variance of [`covariance`](Self::covariance): (μ₂₂ − μ₁₁²)/n + (μ₂₀μ₀₂ + μ₁₁²)/(n (n − 1)), with the sample's own moments
+    /// for the true ones. NaN below two pairs. The formula is exact for any distribution (Kendall & Stuart, 13.2), the plug-in to
+    /// a relative order of 1/√n.
     pub fn variance_of_covariance(&self) -> f64 {
         if self.n < 2 {
             return f64::NAN;
@@ -111,8 +112,8 @@ impl Covariance {
         if uu == 0.0 { 0.0 } else { uv / uu }
     }
 
-    /// Mean of y with x as control variate, whose expectation is known, and a coefficient that this sample had no part in: from a pilot,
-    /// or from theory.
+    /// Mean of y with x as control variate, whose expectation is known, and a coefficient that this sample had no part in: from a
+    /// pilot, or from theory.
     ///
     /// Unbiased for every coefficient, and so is its variance, which is known down to 1e-16 of that of y.
     pub fn controlled_mean(&self, expectation_of_x: f64, coefficient: f64) -> ControlledMean {
@@ -132,10 +133,11 @@ impl Covariance {
 
     /// The same with the [coefficient](Self::control_coefficient) of this very sample: the regression of y on x, read off at E x.
     ///
-    /// The coefficient knows the sample, which costs a bias of −E[(x − E x)² ε] / (n var x) to leading order, ε being what x does not
-    /// explain of y (Lavenberg & Welch 1981): none where y is linear in x but for independent noise, and next to nothing at large n, for
-    /// the error bar falls as 1/√n only. The variance is that of regression,
-    /// Σ ε²/(n − 2) · (1/n + (mean x − E x)²/Σ (x − mean x)²): exact for normal pairs, elsewhere to a relative order of 1/n. NaN below three pairs.
+    /// The coefficient knows the sample, which costs a bias of −E[(x − E x)² ε] / (n var x) to leading order, ε being what x does
+    /// not explain of y (Lavenberg & Welch 1981): none where y is linear in x but for independent noise, and next to nothing at
+    /// large n, for the error bar falls as 1/√n only. The variance is that of regression,
+    /// Σ ε²/(n − 2) · (1/n + (mean x − E x)²/Σ (x − mean x)²): exact for normal pairs, elsewhere to a relative order of 1/n. NaN
+    /// below three pairs.
     pub fn self_controlled_mean(&self, expectation_of_x: f64) -> ControlledMean {
         let c = self.control_coefficient();
         let n = self.n as f64;

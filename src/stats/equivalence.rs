@@ -1,11 +1,13 @@
 //! Positive verdicts: not "no difference was found" but "the difference is below the margin".
 //!
-//! Two one-sided tests (Schuirmann 1987) refute that the difference is above the margin and that it is below its negative. What is claimed
-//! then is wrong with probability alpha at most, and too few samples make it harder to claim, not easier.
+//! Two one-sided tests (Schuirmann 1987) refute that the difference is above the margin and that it is below its negative. What is
+//! claimed then is wrong with probability alpha at most, and too few samples make it harder to claim, not easier.
 
-use super::{Moments, WelchError, normal_critical, normal_tail, student_critical, student_tail, welch_error};
+use super::power::fewest_samples;
+use super::{
+    Moments, PowerError, WelchError, normal_critical, normal_tail, student_critical, student_tail, welch_error,
+};
 use serde::Serialize;
-use thiserror::Error;
 
 /// The outcome of the tests.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -19,17 +21,6 @@ pub struct Equivalence {
     pub margin: f64,
     /// Probability of a difference at least this small, were the true one at the margin. Small means equal.
     pub p_value: f64,
-}
-
-/// Why no number of samples suffices.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-pub enum EquivalenceError {
-    #[error("a true difference of {difference:e} can never be shown to be within {margin:e}")]
-    OutsideMargin { difference: f64, margin: f64 },
-    #[error("{name} is {value:e}, must be in (0, 1)")]
-    Probability { name: &'static str, value: f64 },
-    #[error("the variance is {value:e}, must be finite and not negative")]
-    Variance { value: f64 },
 }
 
 impl Equivalence {
@@ -47,9 +38,9 @@ impl Equivalence {
 
 /// Tests whether a difference with this standard error is within ± margin.
 ///
-/// Exact for a normal difference whose standard error is known (infinite degrees of freedom) or is an independent χ² with these degrees
-/// of freedom; asymptotic otherwise, as the z and t tests are. The two tests need no correction for being two (Berger 1982). A margin that is not
-/// above zero never holds. Nor does one that is not a number.
+/// Exact for a normal difference whose standard error is known (infinite degrees of freedom) or is an independent χ² with these
+/// degrees of freedom; asymptotic otherwise, as the z and t tests are. The two tests need no correction for being two (Berger
+/// 1982). A margin that is not above zero never holds. Nor does one that is not a number.
 pub fn equivalence_test(difference: f64, standard_error: f64, n_degrees_of_freedom: f64, margin: f64) -> Equivalence {
     let t = slack(margin - difference.abs(), standard_error);
     let p_value = student_tail(t, n_degrees_of_freedom);
@@ -62,11 +53,12 @@ pub fn equivalence_of_means(a: &Moments, b: &Moments, margin: f64) -> Equivalenc
     equivalence_test(a.mean() - b.mean(), standard_error, n_degrees_of_freedom, margin)
 }
 
-/// Tests whether a value is within (1 ± margin) times a reference, both with their variances, independent of each other, and normal.
+/// Tests whether a value is within (1 ± margin) times a reference, both with their variances, independent of each other, and
+/// normal.
 ///
-/// By Fieller's argument (1954): value − (1 − margin) · reference is normal with variance v + (1 − margin)² v_ref and must be above zero,
-/// (1 + margin) · reference − value likewise. Exact, and no quotient is ever taken as normal; for a negative reference the signs turn over.
-/// `difference` is value/reference − 1 and `standard_error` that of the delta method, for show.
+/// By Fieller's argument (1954): value − (1 − margin) · reference is normal with variance v + (1 − margin)² v_ref and must be
+/// above zero, (1 + margin) · reference − value likewise. Exact, and no quotient is ever taken as normal; for a negative reference
+/// the signs turn over. `difference` is value/reference − 1 and `standard_error` that of the delta method, for show.
 pub fn relative_equivalence(
     [value, variance]: [f64; 2],
     [reference, reference_variance]: [f64; 2],
@@ -84,8 +76,8 @@ pub fn relative_equivalence(
     Equivalence { difference: ratio - 1.0, standard_error, n_degrees_of_freedom: f64::INFINITY, margin, p_value }
 }
 
-/// Probability that [`equivalence_test`] will hold at level alpha, before there is a sample: for a normal difference of known standard error and
-/// this true value.
+/// Probability that [`equivalence_test`] will hold at level alpha, before there is a sample: for a normal difference of known
+/// standard error and this true value.
 pub fn equivalence_power(true_difference: f64, standard_error: f64, margin: f64, alpha: f64) -> f64 {
     let room = margin - normal_critical(alpha) * standard_error;
     if room <= 0.0 {
@@ -106,38 +98,12 @@ pub fn equivalence_samples(
     margin: f64,
     alpha: f64,
     power: f64,
-) -> Result<u64, EquivalenceError> {
-    for (name, value) in [("the significance", alpha), ("the power", power)] {
-        if !(value > 0.0 && value < 1.0) {
-            return Err(EquivalenceError::Probability { name, value });
-        }
+) -> Result<u64, PowerError> {
+    let is_within = true_difference.abs() < margin;
+    if !is_within {
+        return Err(PowerError::OutsideMargin { difference: true_difference, margin });
     }
-    if !(variance.is_finite() && variance >= 0.0) {
-        return Err(EquivalenceError::Variance { value: variance });
-    }
-    if !(true_difference.abs() < margin) {
-        return Err(EquivalenceError::OutsideMargin { difference: true_difference, margin });
-    }
-    let suffices = |n: u64| equivalence_power(true_difference, (variance / n as f64).sqrt(), margin, alpha) >= power;
-    if variance == 0.0 {
-        return Ok(1);
-    }
-
-    // Power rises with n: double until it suffices, then halve the gap.
-    let mut high = 1;
-    while !suffices(high) && high < 1 << 62 {
-        high *= 2;
-    }
-    let mut low = high / 2;
-    while high - low > 1 {
-        let middle = low + (high - low) / 2;
-        if suffices(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    Ok(high)
+    fewest_samples(variance, alpha, power, |error| equivalence_power(true_difference, error, margin, alpha))
 }
 
 /// How many standard errors there are to the edge; an exact number on the edge or beyond it is infinitely far beyond.

@@ -5,9 +5,9 @@ use serde::Serialize;
 
 /// Count and sums of the first four powers of deviations from a centre beside the mean (Pébay 2008), updated without cancellation.
 ///
-/// The centre is the mean as far as an f64 can hold it; what is left over is kept, so that variance and kurtosis keep their digits beside a
-/// mean of any size. Merging in a fixed order gives the same bits whoever computed the parts. 48 bytes, some 40 operations a number:
-/// where the mean's own error bar is enough, [`Moments`] is leaner.
+/// The centre is the mean as far as an f64 can hold it; what is left over is kept, so that variance and kurtosis keep their digits
+/// beside a mean of any size. Merging in a fixed order gives the same bits whoever computed the parts. 48 bytes, some 40
+/// operations a number: where the mean's own error bar is enough, [`Moments`] is leaner.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct HigherMoments {
     n: u64,
@@ -66,17 +66,19 @@ impl HigherMoments {
         third / second.powf(1.5)
     }
 
-    /// m₄/m₂²: 3 for normal numbers, at least 1 for any; NaN where nothing varies. Bias of order 1/n, downwards where tails are heavy,
-    /// for it is at most n.
+    /// m₄/m₂²: 3 for normal numbers, at least 1 for any; NaN where nothing varies. Bias of order 1/n, downwards where tails are
+    /// heavy, for it is at most n.
     pub fn kurtosis(&self) -> f64 {
         let [second, _, fourth] = self.central();
         self.n as f64 * (fourth / second) / second
     }
 
-    /// Var(s²) = σ⁴ (κ − (n − 3)/(n − 1)) / n with the sample's own variance and kurtosis: 2σ⁴/(n − 1) for normal numbers. NaN below two numbers.
+    /// Var(s²) = σ⁴ (κ − (n − 3)/(n − 1)) / n with the sample's own variance and kurtosis: 2σ⁴/(n − 1) for normal numbers. NaN
+    /// below two numbers.
     ///
-    /// The formula is exact for any distribution (Mood, Graybill & Boes 1974, VI.2); the sample's moments in place of the true ones are
-    /// off by a relative order of 1/√n, and the worse the heavier the tails: κ settles no sooner than the eighth moment does.
+    /// The formula is exact for any distribution (Mood, Graybill & Boes 1974, VI.2); the sample's moments in place of the true
+    /// ones are off by a relative order of 1/√n, and the worse the heavier the tails: κ settles no sooner than the eighth moment
+    /// does.
     pub fn variance_of_variance(&self) -> f64 {
         let n = self.n as f64;
         self.variance().powi(2) * (self.kurtosis() - (n - 3.0) / (n - 1.0)) / n

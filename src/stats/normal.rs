@@ -9,8 +9,8 @@ pub fn z_score(value: f64, reference: f64, variance: f64) -> f64 {
     if value == reference { 0.0 } else { (value - reference) / variance.sqrt() }
 }
 
-/// Probability of a standard normal number at least this far from zero, erfc(|z|/√2). Relative error below z² ulp, up to |z| = 37.5,
-/// beyond which it is no normal number.
+/// Probability of a standard normal number at least this far from zero, erfc(|z|/√2). Relative error below z² ulp, up to |z| =
+/// 37.5, beyond which it is no normal number.
 pub fn two_sided_p(z: f64) -> f64 {
     complementary_error_function(z.abs() * FRAC_1_SQRT_2)
 }

@@ -1,7 +1,7 @@
 //! Tails of the distributions that tests ask for, and the critical values that have a given tail.
 //!
-//! Each tail is summed up where it lies, never as 1 − the rest: relative errors stay below 1e-12 down to the smallest normal number.
-//! A critical value is the tail's inverse, to the rounding that ln p allows.
+//! Each tail is summed up where it lies, never as 1 − the rest: relative errors stay below 1e-12 down to the smallest normal
+//! number. A critical value is the tail's inverse, to the rounding that ln p allows.
 
 use super::special::{complementary_error_function, regularised_incomplete_beta_of};
 use super::special::{regularised_lower_gamma, regularised_upper_gamma};

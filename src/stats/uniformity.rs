@@ -57,9 +57,9 @@ pub fn uniformity_test(values: &[f64]) -> Result<KolmogorovSmirnov, UniformityEr
 
 /// Probability that the empirical distribution function of n uniform numbers is somewhere off by d or more.
 ///
-/// Where it is below 0.01, twice the exact one-sided tail (Smirnov 1944), with a relative error below 3e-7 from counting twice what is off on
-/// both sides. Elsewhere exact up to n = 340 (Durbin's matrix, Marsaglia, Tsang & Wang 2003); beyond, Kolmogorov's limit at
-/// Vrbik's argument (2018), off by less than 0.03/n. Cost O(n), O(n^{3/2} log n) for the matrix.
+/// Where it is below 0.01, twice the exact one-sided tail (Smirnov 1944), with a relative error below 3e-7 from counting twice
+/// what is off on both sides. Elsewhere exact up to n = 340 (Durbin's matrix, Marsaglia, Tsang & Wang 2003); beyond, Kolmogorov's
+/// limit at Vrbik's argument (2018), off by less than 0.03/n. Cost O(n), O(n^{3/2} log n) for the matrix.
 pub fn kolmogorov_tail(d: f64, n: usize) -> f64 {
     let least = 0.5 / n as f64;
     if d <= least {
@@ -103,9 +103,11 @@ fn durbin_matrix(d: f64, n: usize) -> f64 {
     for (i, row) in matrix.iter_mut().enumerate() {
         row.iter_mut().take(i + 2).for_each(|entry| *entry = 1.0);
     }
-    for i in 0..size {
-        matrix[i][0] -= h.powi(i as i32 + 1);
-        matrix[size - 1][i] -= h.powi((size - i) as i32);
+    for (i, row) in matrix.iter_mut().enumerate() {
+        row[0] -= h.powi(i as i32 + 1);
+    }
+    for (i, entry) in matrix[size - 1].iter_mut().enumerate() {
+        *entry -= h.powi((size - i) as i32);
     }
     matrix[size - 1][0] += (2.0 * h - 1.0).max(0.0).powi(size as i32);
     for (i, row) in matrix.iter_mut().enumerate() {

@@ -34,10 +34,11 @@ pub enum VarianceTestError {
 
 /// Tests a sample's variance against a predicted one, with the sample's own kurtosis.
 ///
-/// As [`variance_test_of`], whose approximation is one in the second moment then too: it takes numbers enough to have seen the tails.
-/// Measured at 1000 numbers and a significance of 1e-3, false alarms come at 0.9e-3 of normal and of uniform numbers, 3.2e-3 of
-/// exponential ones, and 2.1e-3 of scores that hit once in fifty; at 10⁴ numbers, at 2e-3 at most. Where the kurtosis is predicted too,
-/// hand it to [`variance_test_of`]: 1.2e-3 of exponential numbers. A sample that does not vary at all refutes the prediction.
+/// As [`variance_test_of`], whose approximation is one in the second moment then too: it takes numbers enough to have seen the
+/// tails. Measured at 1000 numbers and a significance of 1e-3, false alarms come at 0.9e-3 of normal and of uniform numbers,
+/// 3.2e-3 of exponential ones, and 2.1e-3 of scores that hit once in fifty; at 10⁴ numbers, at 2e-3 at most. Where the kurtosis is
+/// predicted too, hand it to [`variance_test_of`]: 1.2e-3 of exponential numbers. A sample that does not vary at all refutes the
+/// prediction.
 ///
 /// # Errors
 /// Fewer than two numbers, or a prediction that is not finite and above zero.
@@ -53,9 +54,9 @@ pub fn variance_test(measured: &HigherMoments, predicted: f64) -> Result<Varianc
 
 /// Tests a variance measured from n numbers against a predicted one, for numbers of this kurtosis.
 ///
-/// s²/σ² has mean 1 and variance (κ − (n − 3)/(n − 1))/n, whatever the distribution; it is taken for the χ²_ν/ν that has the same (Box 1953,
-/// O'Neill 2014), ν = 2n/(κ − (n − 3)/(n − 1)): exact for normal numbers, where ν = n − 1, and asymptotically normal for others with an
-/// error of order 1/√n. z is (ratio − 1)·√(ν/2).
+/// s²/σ² has mean 1 and variance (κ − (n − 3)/(n − 1))/n, whatever the distribution; it is taken for the χ²_ν/ν that has the same
+/// (Box 1953, O'Neill 2014), ν = 2n/(κ − (n − 3)/(n − 1)): exact for normal numbers, where ν = n − 1, and asymptotically normal
+/// for others with an error of order 1/√n. z is (ratio − 1)·√(ν/2).
 ///
 /// # Errors
 /// Fewer than two numbers, a prediction that is not finite and above zero, or a kurtosis below 1.

@@ -16,8 +16,9 @@ pub struct TTest {
 
 /// Tests whether two independent samples have the same mean, their variances being unknown and perhaps unequal.
 ///
-/// Exact to a few per cent of the p-value for normal numbers, from five of each on. Others are normal in the mean only: a sample of
-/// skewness γ moves a p-value by about γ (2t² + 1) / 6√n times the density at t, which in a far tail is a factor of exp(γ t³ / 3√n).
+/// Asymptotic even for normal numbers, of which false alarms at 1e-3 were measured at 1.1e-3 for samples of 30 and 20, 1.3e-3 for
+/// 10 and 10, 0.7e-3 to 1.6e-3 for 5 and 5, and 3e-3 for 20 and 5 where the five are the wider ones. The means of others are
+/// normal asymptotically only: a tail of |t| beyond z is off by about exp(± γ z³/3√n) on either side for a sample of skewness γ.
 ///
 /// All NaN where either has fewer than two numbers; where neither varies, the
 /// p-value is 1 for equal means and 0 for others.
@@ -39,8 +40,8 @@ pub(super) struct WelchError {
     pub n_degrees_of_freedom: f64,
 }
 
-/// √(a + b) of the variances a, b of the means, and (a + b)² / (a²/(n_a − 1) + b²/(n_b − 1)) degrees of freedom, those of the two samples together
-/// where neither varies. NaN where either has fewer than two numbers.
+/// √(a + b) of the variances a, b of the means, and (a + b)² / (a²/(n_a − 1) + b²/(n_b − 1)) degrees of freedom, those of the two
+/// samples together where neither varies. NaN where either has fewer than two numbers.
 pub(super) fn welch_error(a: &Moments, b: &Moments) -> WelchError {
     let (va, vb) = (a.variance_of_mean(), b.variance_of_mean());
     let variance = va + vb;

@@ -1,12 +1,12 @@
 //! Norms, verdicts and rates.
 
 use etendue::compare::{
-    Level, ROUNDING_TOLERANCE, RatesError, compare_blocks, equivalent_blocks, observed_order, p_value_map, p_values,
-    pooled, relative_max, relative_rms, richardson, z_map,
+    Level, ROUNDING_TOLERANCE, RatesError, compare_blocks, compare_blocks_anytime, equivalent_blocks, observed_order,
+    p_value_map, p_values, pooled, relative_max, relative_rms, richardson, z_map,
 };
 use etendue::linalg::Block;
 use etendue::sampling::Streams;
-use etendue::stats::{Moments, binomial_tail, p_value_histogram, two_sided_p};
+use etendue::stats::{Moments, NormalMixture, binomial_tail, p_value_histogram, two_sided_p};
 
 #[test]
 fn norms_weigh_as_they_say() {
@@ -73,6 +73,28 @@ fn one_wrong_entry_is_found_and_named() {
     let verdict = compare_blocks(&reference(), &mean, &variance, 1e-6);
     assert!(!verdict.agrees && verdict.worst_at == (17, 2));
     assert!((verdict.worst_z - 12.0).abs() < 1e-6, "{verdict:?}");
+}
+
+#[test]
+fn one_may_look_while_it_runs() {
+    let (mut mean, variance) = experiment(&reference(), 6, 0.0);
+    let sequence = NormalMixture::new(1e-6, 50, 100).unwrap();
+    let look = |mean: &Block, n_samples| compare_blocks_anytime(&reference(), mean, &variance, n_samples, &sequence);
+    let verdict = look(&mean, 100);
+    assert!(verdict.agrees && verdict.p_value > 0.1);
+    // A look costs: what is beyond the critical z of one look may not be beyond that of all.
+    let once = compare_blocks(&reference(), &mean, &variance, 1e-6);
+    assert!(verdict.critical_z > once.critical_z && verdict.critical_z < 1.5 * once.critical_z);
+    for (share, agrees) in [(0.999, true), (1.001, false)] {
+        let z = share * verdict.critical_z;
+        mean.set(17, 2, reference().get(17, 2) - z * variance.get(17, 2).sqrt());
+        let verdict = look(&mean, 100);
+        assert_eq!((verdict.agrees, verdict.worst_at), (agrees, (17, 2)), "{verdict:?}");
+    }
+    // Nothing is said before the sequence starts, but of numbers that are none.
+    assert!(look(&mean, 49).agrees && look(&mean, 49).critical_z == f64::INFINITY);
+    mean.set(17, 2, f64::NAN);
+    assert!(!look(&mean, 49).agrees);
 }
 
 #[test]
@@ -155,8 +177,17 @@ fn equivalence_is_shown_everywhere_or_not_at_all() {
     // The smallest margin is the one that just holds.
     let least = equivalent_blocks(&reference(), &mean, &variance, verdict.smallest_margin, 1e-4);
     assert!((least.p_value / 1e-4 - 1.0).abs() < 1e-9, "{least:?}");
+    assert_eq!(verdict.to_string(), format!("equal within 0.1 % (p = {:.1e})", verdict.p_value));
     // A margin below the error bars shows nothing, nor do samples that are wrong in one place.
-    assert!(!equivalent_blocks(&reference(), &mean, &variance, 1e-4, 1e-4).holds);
+    let hasty = equivalent_blocks(&reference(), &mean, &variance, 1e-4, 1e-4);
+    assert!(!hasty.holds && hasty.smallest_margin < 1e-3);
+    let text = hasty.to_string();
+    assert!(text.starts_with("not shown to be equal within 0.01 % (p = "), "{text}");
+    // What it says could be shown is rounded up, and so can be.
+    let (_, said) = text.rsplit_once("within ").unwrap();
+    let said: f64 = said.trim_end_matches(" %").parse().unwrap();
+    let next = equivalent_blocks(&reference(), &mean, &variance, said / 100.0, 1e-4);
+    assert!(next.holds && said / 100.0 < 1.1 * hasty.smallest_margin, "{text}");
     mean.set(17, 2, reference().get(17, 2) + 0.05);
     let verdict = equivalent_blocks(&reference(), &mean, &variance, 1e-3, 1e-4);
     assert!(!verdict.holds && verdict.worst_at == (17, 2), "{verdict:?}");
@@ -171,8 +202,8 @@ fn equivalence_is_shown_everywhere_or_not_at_all() {
     assert!(!equivalent_blocks(&Block::zeros(0, 0), &Block::zeros(0, 0), &Block::zeros(0, 0), 1e-3, 0.1).holds);
 }
 
-/// Light that arrives late is dim everywhere: the eighth bounce of a lamp of radiance 1 may have a reference of 1e-4 in every bundle. The largest
-/// of them is no bound of a score, which is 1 when it comes, once in 10⁴ samples.
+/// Light that arrives late is dim everywhere: the eighth bounce of a lamp of radiance 1 may have a reference of 1e-4 in every
+/// bundle. The largest of them is no bound of a score, which is 1 when it comes, once in 10⁴ samples.
 #[test]
 fn late_bounces_are_pooled_until_they_score() {
     let (n_bundles, n_samples, chance) = (60, 100_000, 1e-4);

@@ -14,6 +14,7 @@ mod enclosure;
 mod equations;
 mod estimator;
 mod exchange;
+mod false_alarms;
 mod form_factors;
 mod format;
 mod gallery;

@@ -168,8 +168,8 @@ fn the_error_bar_of_a_covariance_is_how_covariances_scatter() {
 
 #[test]
 fn control_variates_are_as_good_as_their_error_bars() {
-    // y = x² on [0, 1]: mean 1/3; the best coefficient is 1 and leaves ε = (x − ½)² − 1/12, E ε² = 1/180. A coefficient of the sample's own
-    // costs −E[(x − ½)² ε]/(n/12) = −1/(15 n).
+    // y = x² on [0, 1]: mean 1/3; the best coefficient is 1 and leaves ε = (x − ½)² − 1/12, E ε² = 1/180. A coefficient of the
+    // sample's own costs −E[(x − ½)² ε]/(n/12) = −1/(15 n).
     let n = 100;
     let mut moments = [Moments::default(); 5];
     for experiment in 0..40_000 {

@@ -2,10 +2,11 @@
 
 use etendue::sampling::{Stream, Streams};
 use etendue::stats::{
-    ConfidenceError, EmpiricalBernstein, EquivalenceError, Moments, NormalMixture, UniformityError, benjamini_hochberg,
-    benjamini_yekutieli, binomial_interval, binomial_tail, binomial_test, equivalence_of_means, equivalence_power,
-    equivalence_samples, equivalence_test, holm, kolmogorov_tail, normal_critical, normal_tail, p_value_histogram,
-    relative_equivalence, sidak, student_critical, student_tail, uniformity_test,
+    ConfidenceError, EmpiricalBernstein, Moments, NormalMixture, PowerError, UniformityError, benjamini_hochberg,
+    benjamini_yekutieli, binomial_interval, binomial_tail, binomial_test, detection_power, detection_samples,
+    equivalence_of_means, equivalence_power, equivalence_samples, equivalence_test, holm, kolmogorov_tail,
+    normal_critical, normal_tail, p_value_histogram, relative_equivalence, sidak, sidak_level, student_critical,
+    student_tail, two_sided_p, uniformity_test,
 };
 
 /// Significance of every random test here.
@@ -174,8 +175,8 @@ fn corrections_reject_what_they_should() {
 
 #[test]
 fn the_share_of_false_discoveries_is_bounded() {
-    // 60 true hypotheses and 40 false ones at z = 3: alarms that are false are 0.1 · 60/100 of all in the mean (Benjamini & Hochberg: with
-    // equality for independent tests).
+    // 60 true hypotheses and 40 false ones at z = 3: alarms that are false are 0.1 · 60/100 of all in the mean (Benjamini &
+    // Hochberg: with equality for independent tests).
     let (mut share, mut any) = (Moments::default(), 0);
     for experiment in 0..4000 {
         let mut stream = Streams::new(131, "discoveries").stream(experiment, 0);
@@ -259,17 +260,36 @@ fn the_power_said_before_is_the_power_had() {
     assert_eq!(equivalence_samples(0.0, 1.0, 0.1, 0.01, 0.8), Ok(exact.ceil() as u64));
     assert_eq!(equivalence_samples(0.0, 0.0, 0.1, 0.01, 0.8), Ok(1));
     assert_eq!(equivalence_power(0.0, 1.0, 0.1, 0.01), 0.0);
-    let outside = EquivalenceError::OutsideMargin { difference: 0.1, margin: 0.1 };
+    let outside = PowerError::OutsideMargin { difference: 0.1, margin: 0.1 };
     assert_eq!(equivalence_samples(0.1, 1.0, 0.1, 0.01, 0.8), Err(outside));
-    assert!(matches!(equivalence_samples(0.0, 1.0, 0.1, 0.0, 0.8), Err(EquivalenceError::Probability { .. })));
-    assert!(matches!(equivalence_samples(0.0, -1.0, 0.1, 0.1, 0.8), Err(EquivalenceError::Variance { .. })));
+    assert!(matches!(equivalence_samples(0.0, 1.0, 0.1, 0.0, 0.8), Err(PowerError::Probability { .. })));
+    assert!(matches!(equivalence_samples(0.0, -1.0, 0.1, 0.1, 0.8), Err(PowerError::Variance { .. })));
+}
+
+#[test]
+fn the_budget_said_before_finds_the_bug() {
+    // A mean off by 0.1 % of 1, numbers of standard deviation 0.5, one comparison of 300 together at 1e-6.
+    let (difference, variance, alpha) = (1e-3, 0.25, sidak_level(1e-6, 300));
+    let n = detection_samples(difference, variance, alpha, 0.9).unwrap();
+    let closed = (normal_critical(0.5 * alpha) + normal_critical(0.1)).powi(2) * variance / difference / difference;
+    assert_relative(n as f64, closed, 1e-5);
+    let error = (variance / n as f64).sqrt();
+    let mut stream = Streams::new(151, "budget").stream(0, 0);
+    let found = (0..4000).filter(|_| two_sided_p((difference + error * normal(&mut stream)) / error) < alpha).count();
+    assert!(binomial_test(found as u64, 4000, 0.9).p_value > ALPHA, "{found} of 4000");
+    // Without a difference the test finds what it finds by chance.
+    assert_relative(detection_power(0.0, error, 0.01), 0.01, 1e-12);
+    assert_eq!(detection_samples(0.1, 0.0, 0.01, 0.9), Ok(1));
+    assert!(matches!(detection_samples(0.0, 1.0, 0.01, 0.9), Err(PowerError::NoDifference { .. })));
+    assert!(matches!(detection_samples(0.1, 1.0, 0.01, 1.0), Err(PowerError::Probability { .. })));
+    assert!(matches!(detection_samples(0.1, f64::NAN, 0.01, 0.5), Err(PowerError::Variance { .. })));
 }
 
 // ---- confidence sequences
 
 #[test]
 fn normal_mixtures_are_robbins() {
-    let sequence = NormalMixture::new(0.05, 10, 1000);
+    let sequence = NormalMixture::new(0.05, 10, 1000).unwrap();
     let sample: Moments = (0..1000).map(|k| f64::from(k % 2)).collect();
     // By hand: −2 ln 0.05 = 5.991465, ln(6.991465) = 1.944690; n ρ² = 7.936155; s² = 250/999.
     let growth: f64 = 8.936_154_9;
@@ -279,7 +299,7 @@ fn normal_mixtures_are_robbins() {
     // Not twice the width of an interval for this one look, and near the best there is.
     let once = normal_critical(0.025) * sample.standard_error();
     assert!(half > 1.3 * once && half < 1.6 * once, "{}", half / once);
-    let others = [300, 3000].map(|best| NormalMixture::new(0.05, 10, best).half_width(&sample));
+    let others = [300, 3000].map(|best| NormalMixture::new(0.05, 10, best).unwrap().half_width(&sample));
     assert!(others.iter().all(|other| *other > half && *other < 1.15 * half));
     // The p-value is the level at which the interval ends.
     let edge = sequence.interval(&sample)[0];
@@ -296,7 +316,7 @@ fn normal_mixtures_are_robbins() {
 #[test]
 fn normal_mixtures_hold_at_all_times_together() {
     let (n_runs, n_last, alpha) = (1000, 3000, 0.05);
-    let sequence = NormalMixture::new(alpha, 100, 1000);
+    let sequence = NormalMixture::new(alpha, 100, 1000).unwrap();
     let (mut n_missed, mut n_missed_naively) = (0, 0);
     for run in 0..n_runs {
         let mut stream = Streams::new(139, "sequence").stream(run, 0);
@@ -348,6 +368,7 @@ fn sequences_refuse_what_they_cannot_promise() {
     assert_eq!(sequence.push(2.5), Err(out));
     assert!(sequence.push(f64::NAN).is_err() && sequence.n() == 0);
     assert!(matches!(EmpiricalBernstein::new([1.0, 1.0], 0.01), Err(ConfidenceError::Bounds { .. })));
+    assert_eq!(NormalMixture::new(0.0, 1, 9), Err(ConfidenceError::Significance { value: 0.0 }));
     assert!(matches!(EmpiricalBernstein::new([0.0, 1.0], 1.0), Err(ConfidenceError::Significance { .. })));
     // A mean that moves is found out: no value was within all intervals.
     (0..20_000).for_each(|k| sequence.push(if k < 10_000 { 0.0 } else { 2.0 }).unwrap());

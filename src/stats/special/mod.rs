@@ -1,7 +1,7 @@
 //! Special functions, by the names the tables use; accurate far out in the tails, where hypothesis tests live.
 //!
-//! erfc and ln Γ are those of `libm`. The incomplete functions are our own: those of `statrs` 0.19 take differences of ln Γ, and lose
-//! 4e-10 of I_x(5·10⁵, ½), 2e-7 of Q(5·10⁷, x).
+//! erfc and ln Γ are those of `libm`. The incomplete functions are our own: those of `statrs` 0.19 take differences of ln Γ, and
+//! lose 4e-10 of I_x(5·10⁵, ½), 2e-7 of Q(5·10⁷, x).
 
 mod beta;
 mod gamma;
@@ -64,8 +64,8 @@ fn stirling_error(x: f64) -> f64 {
     series.iter().rev().fold(0.0, |sum, term| sum * t + term) / x
 }
 
-/// r − 1 − ln r for a ratio r > 0, of which r − 1 is given too, for it may be surer: zero at 1 and above it elsewhere. Relative error of
-/// a few ulp.
+/// r − 1 − ln r for a ratio r > 0, of which r − 1 is given too, for it may be surer: zero at 1 and above it elsewhere. Relative
+/// error of a few ulp.
 fn deviance(ratio: f64, excess: f64) -> f64 {
     let d = excess;
     if d.abs() > 0.3 {
@@ -83,8 +83,8 @@ fn deviance(ratio: f64, excess: f64) -> f64 {
     d * v - 2.0 * v * square * sum
 }
 
-/// b₀ + a₁/(b₁ + a₂/(b₂ + …)) with (aₖ, bₖ) = coefficients(k), by the modified Lentz method (Thompson & Barnett 1986), until a factor
-/// is 1 to rounding or not a number.
+/// b₀ + a₁/(b₁ + a₂/(b₂ + …)) with (aₖ, bₖ) = coefficients(k), by the modified Lentz method (Thompson & Barnett 1986), until a
+/// factor is 1 to rounding or not a number.
 fn continued_fraction(first: f64, coefficients: impl Fn(f64) -> (f64, f64)) -> f64 {
     const TINY: f64 = 1e-280;
     /// Enough for parameters up to 1e12; what comes later would take seconds.
