@@ -4,7 +4,7 @@ use etendue::assembly::{Exchange, System, assemble};
 use etendue::basis::{Bundles, Resolution};
 use etendue::compare::{compare_blocks, relative_max};
 use etendue::estimator::{
-    Bounces, Estimate, Estimator, EstimatorError, MatrixWalk, Order, Prediction, Scoring, Truth, estimate,
+    Bounces, Estimate, Estimator, EstimatorError, MatrixWalk, OracleError, Order, Prediction, Scoring, Truth, estimate,
 };
 use etendue::gallery;
 use etendue::linalg::{Block, Equation};
@@ -15,6 +15,8 @@ use etendue::stats::critical_z;
 /// Probability that one of these tests rejects walks that are right.
 const ALPHA: f64 = 1e-6;
 const SEED: u64 = 0x0dd5_0f0d_d5ee_d5a1;
+/// A measured variance whose standard error is this small, relatively, rests on some thousand rare scores.
+const NEARLY_NORMAL: f64 = 0.03;
 /// Elimination without subtraction loses some ulp an unknown, of which there are hundreds at most.
 const SOLVE_TOLERANCE: f64 = 1e-12;
 
@@ -208,6 +210,27 @@ fn assert_predicted(name: &str, exact: &Block, prediction: &Prediction, drawn: &
     );
 }
 
+/// As [`assert_predicted`], entry by entry, for those of enough samples that their variance is nearly normal.
+fn assert_each_predicted(name: &str, exact: &Block, prediction: &Prediction, drawn: &Estimate) {
+    assert!(relative_max(&prediction.mean, exact) < SOLVE_TOLERANCE, "{} in {name}: the mean", drawn.estimator);
+    let n = drawn.n_samples as f64;
+    let (errors, mut n_compared) = (prediction.variance_standard_error(drawn.n_samples).unwrap(), 0);
+    for (k, variance) in prediction.variance.values().iter().enumerate() {
+        let (measured, error) = (n * drawn.variance_of_mean.values()[k], errors.values()[k]);
+        if error < NEARLY_NORMAL * variance {
+            n_compared += 1;
+            let off =
+                [(measured - variance) / error, (drawn.mean.values()[k] - exact.values()[k]) / (variance / n).sqrt()];
+            assert!(
+                off.iter().all(|z| z.abs() < critical_z(ALPHA, 2_000)),
+                "{} in {name}: entry {k} is off by {off:?}",
+                drawn.estimator
+            );
+        }
+    }
+    assert!(n_compared > 0, "{} in {name}: nothing was compared", drawn.estimator);
+}
+
 #[test]
 fn variances_of_gathering_walks_are_predicted() {
     for (scene, patch_size) in scenes() {
@@ -243,6 +266,26 @@ fn variances_of_bounces_are_predicted() {
                 &estimate(&walk, 100_000, SEED),
                 12,
             );
+        }
+    }
+}
+
+/// Errors of different bundles are not independent: one bundle at a time.
+#[test]
+fn variances_of_shooting_walks_are_predicted() {
+    for (scene, patch_size) in scenes() {
+        let system = system(&scene, patch_size);
+        let (exact, walk) = (exact(&system), MatrixWalk::collision(&system).unwrap());
+        for scoring in Scoring::ALL {
+            let shooting = walk.shooting(scoring).unwrap();
+            let prediction = shooting.predict(Order::Fourth, by_elimination).unwrap();
+            assert_each_predicted(scene.name(), &exact, &prediction, &estimate(&shooting, 40 * n_large(), SEED));
+            let shooting = shooting.with_bounces(Bounces::Each(8));
+            let prediction = shooting.predict(Order::Fourth, by_elimination).unwrap();
+            let exact = exact_bounces(&system, Bounces::Each(8));
+            assert_each_predicted(scene.name(), &exact, &prediction, &estimate(&shooting, 40 * n_large(), SEED));
+            let partial = shooting.with_bounces(Bounces::UpTo(2)).predict(Order::Variance, by_elimination);
+            assert_eq!(partial, Err(OracleError::PartialSum { last: 2 }));
         }
     }
 }

@@ -53,22 +53,7 @@ impl MatrixWalk {
     }
 
     fn law(&self) -> Law<'_> {
-        let chain = &self.chain;
-        let (n, n_bands) = (chain.n_bundles(), chain.n_bands);
-        let survival = |i: usize, _| chain.survival[i];
-        let gain: Vec<Vec<f64>> = (0..n).map(|i| chain.gain(i).collect()).collect();
-        let [at_last, at_other] = self.scores();
-        Law {
-            propagation: &chain.propagation,
-            ending: Block::from_fn(n, n_bands, |i, _| 1.0 - chain.survival[i]),
-            at_last,
-            at_other,
-            row: Block::from_fn(n, n_bands, survival),
-            gain: Block::from_fn(n, n_bands, |i, band| gain[i][band]),
-            guide: None,
-            may_leave: true,
-            never_grows: true,
-        }
+        Law::of_chain(&self.chain, self.scores())
     }
 }
 

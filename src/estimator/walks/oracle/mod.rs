@@ -24,6 +24,7 @@ mod kernel;
 mod law;
 mod prediction;
 mod recursion;
+mod shooting;
 
 pub(super) use law::Law;
 pub use prediction::{OracleError, Order, Prediction};
