@@ -19,7 +19,9 @@ pub use estimate::{Estimate, MergeError, WeightedMean};
 pub use paths::PathTracer;
 pub use run::{estimate, estimate_range, estimate_watched};
 pub use score::Score;
-pub use walks::{MatrixWalk, MeasuringWalk, OracleError, Order, Prediction, Scoring, ShootingWalk, StochasticJacobi};
+pub use walks::{
+    GuidedWalk, MatrixWalk, MeasuringWalk, OracleError, Order, Prediction, Scoring, ShootingWalk, StochasticJacobi,
+};
 
 use crate::linalg::Block;
 use crate::sampling::{Stream, Streams};

@@ -2,6 +2,7 @@
 
 mod chain;
 mod gathering;
+mod guided;
 mod jacobi;
 mod measuring;
 mod oracle;
@@ -9,6 +10,7 @@ mod scoring;
 mod shooting;
 
 pub use gathering::MatrixWalk;
+pub use guided::GuidedWalk;
 pub use jacobi::StochasticJacobi;
 pub use measuring::MeasuringWalk;
 pub use oracle::{OracleError, Order, Prediction};

@@ -20,6 +20,7 @@
 
 mod existence;
 mod gathering;
+mod guided;
 mod kernel;
 mod law;
 mod prediction;
