@@ -7,6 +7,7 @@ mod jacobi;
 mod measuring;
 mod oracle;
 mod scoring;
+mod sequential;
 mod shooting;
 
 pub use gathering::MatrixWalk;
@@ -15,4 +16,5 @@ pub use jacobi::StochasticJacobi;
 pub use measuring::MeasuringWalk;
 pub use oracle::{OracleError, Order, Prediction};
 pub use scoring::Scoring;
+pub use sequential::{Sequential, SequentialEstimate, SequentialStop, Stage};
 pub use shooting::ShootingWalk;
