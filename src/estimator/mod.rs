@@ -20,8 +20,8 @@ pub use paths::PathTracer;
 pub use run::{estimate, estimate_range, estimate_watched};
 pub use score::Score;
 pub use walks::{
-    GuidedWalk, MatrixWalk, MeasuringWalk, OracleError, Order, Prediction, Scoring, Sequential, SequentialEstimate,
-    SequentialStop, ShootingWalk, Stage, StochasticJacobi,
+    GuidedWalk, MatrixWalk, MeasuringWalk, OracleError, Order, Prediction, QuasiWalk, Scoring, Sequential,
+    SequentialEstimate, SequentialStop, ShootingWalk, Stage, StochasticJacobi,
 };
 
 use crate::linalg::Block;
