@@ -16,6 +16,10 @@ pub enum EstimatorError {
     NotReciprocal,
     #[error("light cannot be shot: no emission to draw from: {0}")]
     Emission(#[source] AliasError),
+    #[error("bundle {bundle}, band {band}: the guide or its source is {value:e}, must be finite and not negative")]
+    Guide { bundle: usize, band: usize, value: f64 },
+    #[error("bundle {bundle}, band {band}: the guide is zero where there is something to find")]
+    GuideMisses { bundle: usize, band: usize },
     #[error("a run needs at least one particle")]
     NoParticles,
     #[error("emitters cannot be chosen by their power: {0}")]

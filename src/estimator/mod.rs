@@ -19,7 +19,10 @@ pub use estimate::{Estimate, MergeError, WeightedMean};
 pub use paths::{Bidirectional, Heuristic, LightTracer, PathTracer, Roulette, Sampling};
 pub use run::{estimate, estimate_range, estimate_watched};
 pub use score::Score;
-pub use walks::{MatrixWalk, MeasuringWalk, OracleError, Order, Prediction, Scoring, ShootingWalk, StochasticJacobi};
+pub use walks::{
+    GuidedWalk, MatrixWalk, MeasuringWalk, OracleError, Order, Prediction, QuasiWalk, Scoring, Sequential,
+    SequentialEstimate, SequentialStop, ShootingWalk, Stage, StochasticJacobi,
+};
 
 use crate::linalg::Block;
 use crate::sampling::{Stream, Streams};

@@ -21,6 +21,7 @@ use super::super::{Bounces, Estimator, EstimatorError, Score, Truth};
 use super::chain::Chain;
 use super::gathering::add;
 use super::measuring::Starts;
+use super::oracle::Law;
 use super::{MatrixWalk, Scoring};
 use crate::linalg::Block;
 use crate::sampling::Stream;
@@ -36,7 +37,7 @@ pub struct ShootingWalk {
     pub(super) births: Arc<Starts>,
     /// n × (1 + 3 bands), row by row: p, then a / p, α / μ and β / μ of every band.
     bundles: Vec<f64>,
-    known: Block,
+    pub(super) known: Block,
 }
 
 impl MatrixWalk {
@@ -74,6 +75,18 @@ impl ShootingWalk {
 
     pub fn scoring(&self) -> Scoring {
         self.scoring
+    }
+
+    pub(super) fn bounces(&self) -> Bounces {
+        self.columns.bounces
+    }
+
+    /// What a particle of unit power does where it has arrived.
+    pub(super) fn law(&self) -> Law<'_> {
+        let (n, n_bands) = (self.chain.n_bundles(), self.chain.n_bands);
+        let at =
+            |first: usize| Block::from_fn(n, n_bands, |i, band| self.bundles[i * (1 + 3 * n_bands) + first + band]);
+        Law::of_chain(&self.chain, [at(1 + n_bands), at(1 + 2 * n_bands)])
     }
 }
 

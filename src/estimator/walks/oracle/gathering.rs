@@ -1,7 +1,6 @@
 //! Moments of gathering walks, bundle by bundle, bounce by bounce and measurement by measurement.
 
-use super::super::measuring::{MeasuringWalk, Starts};
-use super::super::{MatrixWalk, Scoring};
+use super::super::{MatrixWalk, MeasuringWalk, Scoring};
 use super::recursion::{Central, Visit};
 use super::{Law, OracleError, Order, Prediction};
 use crate::estimator::Bounces;
@@ -53,22 +52,7 @@ impl MatrixWalk {
     }
 
     fn law(&self) -> Law<'_> {
-        let chain = &self.chain;
-        let (n, n_bands) = (chain.n_bundles(), chain.n_bands);
-        let survival = |i: usize, _| chain.survival[i];
-        let gain: Vec<Vec<f64>> = (0..n).map(|i| chain.gain(i).collect()).collect();
-        let [at_last, at_other] = self.scores();
-        Law {
-            propagation: &chain.propagation,
-            ending: Block::from_fn(n, n_bands, |i, _| 1.0 - chain.survival[i]),
-            at_last,
-            at_other,
-            row: Block::from_fn(n, n_bands, survival),
-            gain: Block::from_fn(n, n_bands, |i, band| gain[i][band]),
-            guide: None,
-            may_leave: true,
-            never_grows: true,
-        }
+        Law::of_chain(&self.chain, self.scores())
     }
 }
 
@@ -84,7 +68,10 @@ impl MeasuringWalk {
         solve: impl FnMut(Equation<'_>) -> Result<Block, E>,
     ) -> Result<Prediction, OracleError<E>> {
         let of_walks = self.walk.predict(order, radiance, solve)?;
-        Ok(of_walks.begun_at(&self.starts, self.walk.chain.n_bands))
+        let n_bands = self.walk.chain.n_bands;
+        Ok(of_walks.begun_at(self.starts.len(), |m, c| {
+            (self.starts[m].probabilities(), self.starts[m].weights_of(c % n_bands))
+        }))
     }
 }
 
@@ -115,17 +102,12 @@ impl Prediction {
         }
     }
 
-    /// Of walks that begin on a random bundle with a weight, one row a set of starts.
-    pub(in super::super) fn begun_at(&self, starts: &[Starts], n_bands: usize) -> Self {
+    /// Of walks that begin on a random bundle with a weight: `starts(row, column)` gives the probabilities and weights of one row.
+    pub(super) fn begun_at(&self, n_rows: usize, starts: impl Fn(usize, usize) -> (Vec<f64>, Vec<f64>)) -> Self {
         let n_columns = self.mean.n_columns();
-        let mut rows = Vec::with_capacity(starts.len());
-        for starts in starts {
-            let probabilities = starts.probabilities();
-            let row: Vec<[f64; 4]> =
-                (0..n_columns).map(|c| self.mixed(&probabilities, &starts.weights_of(c % n_bands), c)).collect();
-            rows.push(row);
-        }
-        let moment = |k: usize| Block::from_fn(starts.len(), n_columns, |m, c| rows[m][c][k]);
+        let row = |m: usize| (0..n_columns).map(|c| self.mixed(&starts(m, c), c)).collect();
+        let rows: Vec<Vec<[f64; 4]>> = (0..n_rows).map(row).collect();
+        let moment = |k: usize| Block::from_fn(n_rows, n_columns, |m, c| rows[m][c][k]);
         Self {
             mean: moment(0),
             variance: moment(1),
@@ -135,7 +117,7 @@ impl Prediction {
     }
 
     /// Mean and moments about it of w X with the bundle drawn by q.
-    fn mixed(&self, q: &[f64], w: &[f64], c: usize) -> [f64; 4] {
+    fn mixed(&self, (q, w): &(Vec<f64>, Vec<f64>), c: usize) -> [f64; 4] {
         let drawn = || q.iter().zip(w).enumerate().filter(|(_, (q, _))| **q > 0.0);
         let mean = drawn().map(|(i, (q, w))| q * w * self.mean.get(i, c)).sum();
         let of = |block: Option<&Block>, i: usize| block.map_or(0.0, |block| block.get(i, c));

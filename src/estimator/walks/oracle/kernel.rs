@@ -24,6 +24,22 @@ impl<'a> Kernel<'a> {
         Self { propagation: law.propagation, left, right, scratch: Scratch::default() }
     }
 
+    /// M⁻¹ Hₘᵀ M = G diag(r oᵐ), where M G is symmetric and nothing guides the walk.
+    pub fn adjoint(law: &'a Law<'_>, order: usize) -> Self {
+        let ones = Block::from_fn(law.n_bundles(), law.n_bands(), |_, _| 1.0);
+        Self {
+            right: Some(Self::new(law, order).left),
+            left: ones,
+            propagation: law.propagation,
+            scratch: Scratch::default(),
+        }
+    }
+
+    /// r oᵐ of one band, n × 1.
+    pub fn left_of(&self, band: usize) -> Block {
+        Block::from_fn(self.left.n_rows(), 1, |i, _| self.left.get(i, band))
+    }
+
     /// out ← second · op(first · x), where there is a first and a second.
     fn between(&self, first: Option<&Block>, x: &Block, second: Option<&Block>, out: &mut Block, transposed: bool) {
         let weigh = |block: &mut Block, weights: Option<&Block>| {

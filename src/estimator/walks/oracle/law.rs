@@ -1,5 +1,6 @@
 //! What one step of a walk does, in numbers a linear system can be made of.
 
+use super::super::chain::Chain;
 use crate::linalg::{Block, LinearOperator};
 
 /// The walk that stands on bundle i with weight 1, in one band:
@@ -30,7 +31,24 @@ pub struct Law<'a> {
     pub never_grows: bool,
 }
 
-impl Law<'_> {
+impl<'a> Law<'a> {
+    /// Survive by p, step by G, with what the last visit and the others score, n × bands.
+    pub fn of_chain(chain: &'a Chain, [at_last, at_other]: [Block; 2]) -> Self {
+        let (n, n_bands) = (chain.n_bundles(), chain.n_bands);
+        let gain: Vec<Vec<f64>> = (0..n).map(|i| chain.gain(i).collect()).collect();
+        Self {
+            propagation: &chain.propagation,
+            ending: Block::from_fn(n, n_bands, |i, _| 1.0 - chain.survival[i]),
+            at_last,
+            at_other,
+            row: Block::from_fn(n, n_bands, |i, _| chain.survival[i]),
+            gain: Block::from_fn(n, n_bands, |i, band| gain[i][band]),
+            guide: None,
+            may_leave: true,
+            never_grows: true,
+        }
+    }
+
     pub fn n_bundles(&self) -> usize {
         self.row.n_rows()
     }

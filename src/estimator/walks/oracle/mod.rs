@@ -20,10 +20,12 @@
 
 mod existence;
 mod gathering;
+mod guided;
 mod kernel;
 mod law;
 mod prediction;
 mod recursion;
+mod shooting;
 
 pub(super) use law::Law;
 pub use prediction::{OracleError, Order, Prediction};

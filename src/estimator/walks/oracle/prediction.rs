@@ -33,6 +33,8 @@ pub enum OracleError<E> {
         "whether the score has a moment of order {order} is undecided: the spectral radius of its matrix lies between {low:.9} and {high:.9}"
     )]
     Undecided { order: usize, low: f64, high: f64 },
+    #[error("the sum of bounces up to {last} is not predicted where particles are shot: score each bounce, or all")]
+    PartialSum { last: usize },
     #[error(transparent)]
     Solve(E),
 }
