@@ -109,7 +109,9 @@ impl<'a> PathTracer<'a> {
             }
 
             // Draw a direction that light may come from, and let the path survive or not.
-            let Some(turn) = vertex.reflection.turn(vertex.given, stream.uniform2(), &mut throughput) else { return n_rays };
+            let Some(turn) = vertex.reflection.turn(vertex.given, stream.uniform2(), &mut throughput) else {
+                return n_rays;
+            };
             let survival = self.roulette.survival(bounce, throughput.max());
             if survival < 1.0 {
                 if stream.uniform() >= survival {
@@ -160,9 +162,7 @@ impl<'a> PathTracer<'a> {
         // f E cosθ′ / p, times the weight.
         let by_point = emitter.density * distance_squared / emitter_cosine;
         let weight = match self.sampling {
-            Sampling::Both(heuristic) => {
-                heuristic.weight(by_point, vertex.reflection.density(vertex.given, incident))
-            }
+            Sampling::Both(heuristic) => heuristic.weight(by_point, vertex.reflection.density(vertex.given, incident)),
             _ => 1.0,
         };
         let mut light = throughput.clone();

@@ -22,7 +22,9 @@ impl Roulette {
     /// Refuses what is no probability, or lets no path go on.
     pub(super) fn checked(self) -> Result<Self, EstimatorError> {
         match self {
-            Self::Constant(survival) if !(survival > 0.0 && survival <= 1.0) => Err(EstimatorError::Survival { survival }),
+            Self::Constant(survival) if !(survival > 0.0 && survival <= 1.0) => {
+                Err(EstimatorError::Survival { survival })
+            }
             _ => Ok(self),
         }
     }

@@ -46,7 +46,8 @@ fn closed_part_in(stage: &Stage<'_>, band: usize) -> Option<usize> {
             }
         }
         seen[k].dedup();
-        ends[k] = ends[k] || dark.iter().any(|other| sees(stage, [k, *other].map(|k| (k / 2, side_of(k))), &mut stream));
+        ends[k] =
+            ends[k] || dark.iter().any(|other| sees(stage, [k, *other].map(|k| (k / 2, side_of(k))), &mut stream));
     }
 
     // Let what sees a side that ends, end too.

@@ -1,1 +1,1 @@
-//! x
+//! Photon density.

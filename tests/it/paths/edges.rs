@@ -8,7 +8,8 @@ use etendue::scattering::Phong;
 /// Bands that nothing emits, and sides that reflect nothing.
 fn dim_room() -> Scene {
     let [floor, ceiling, left, right, back, _] = cube();
-    let mut shelf = matte("shelf", quad([0.2, 0.4, 0.2], [0.5, 0.0, 0.1], [0.0, 0.1, 0.5], [0.5, 2.0, 0.5]), &[0.0; 5], &[0.0; 5]);
+    let mut shelf =
+        matte("shelf", quad([0.2, 0.4, 0.2], [0.5, 0.0, 0.1], [0.0, 0.1, 0.5], [0.5, 2.0, 0.5]), &[0.0; 5], &[0.0; 5]);
     shelf.back = Some(Arc::new(Lambert::grey(0.7, 5)));
     scene(vec![
         matte("floor", floor, &[0.5, 0.9, 0.0, 0.3, 1.0], &[0.0; 5]),
@@ -104,9 +105,15 @@ fn closed_parts_that_absorb_nothing_are_refused() {
     assert!(is_accepted(&scene(surfaces)));
 
     // A closed white box behind a wall of an ordinary room is found, though no emitter is in it.
-    let mut surfaces: Vec<Surface> = cube().into_iter().enumerate().map(|(k, wall)| matte(&format!("wall-{k}"), wall, &[0.5, 0.5], &[1.0, 1.0])).collect();
+    let mut surfaces: Vec<Surface> = cube()
+        .into_iter()
+        .enumerate()
+        .map(|(k, wall)| matte(&format!("wall-{k}"), wall, &[0.5, 0.5], &[1.0, 1.0]))
+        .collect();
     let shifted = |wall: &Polygon| Polygon::new(wall.vertices().iter().map(|v| *v + 3.0 * Vec3::X).collect()).unwrap();
-    surfaces.extend(cube().iter().enumerate().map(|(k, wall)| matte(&format!("hidden-{k}"), shifted(wall), &[1.0, 0.2], &[0.0; 2])));
+    surfaces.extend(
+        cube().iter().enumerate().map(|(k, wall)| matte(&format!("hidden-{k}"), shifted(wall), &[1.0, 0.2], &[0.0; 2])),
+    );
     let hidden = scene(surfaces);
     let refused = PathTracer::new(&hidden, &bundles(&hidden, 1.0)).map(|_| ());
     assert_eq!(refused, Err(EstimatorError::NeverEnds { bundle: 6 }));

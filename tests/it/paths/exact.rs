@@ -7,7 +7,7 @@ use etendue::scattering::Phong;
 use std::f64::consts::PI;
 
 /// Bundles × samples in a batch, in the gallery.
-const WORK: u64 = 2_000;
+const WORK: u64 = 400;
 
 /// Each estimator against the exact answer where one is known of surface means, against the energy balance where that is, and everywhere
 /// against path tracing.
@@ -29,7 +29,7 @@ fn every_estimator_in_every_scene_of_the_gallery() {
         };
         let samples = |contestant: &Contestant| {
             // A start of its own for every bundle, or one for all.
-            (WORK / contestant.estimator.n_starts() as u64).max(8)
+            (WORK / contestant.estimator.n_starts() as u64).max(4)
         };
         let all = contestants(&scene, &bundles, Bounces::All);
         let reference = batches(&*all[0].estimator, 4 * samples(&all[0]), of);
@@ -108,10 +108,9 @@ fn compare_with_exact(
 fn bounces_of_the_furnaces() {
     let (albedo, emission) = ([0.5, 0.9], [1.0, 0.25]);
     let mut verdict = Verdict::default();
-    for scene in [
-        gallery::furnace_cube(&albedo, &emission).unwrap(),
-        gallery::furnace_sphere(1, &albedo, &emission).unwrap(),
-    ] {
+    for scene in
+        [gallery::furnace_cube(&albedo, &emission).unwrap(), gallery::furnace_sphere(1, &albedo, &emission).unwrap()]
+    {
         let bundles = bundles(&scene, 100.0);
         let means = SurfaceMeans::new(&scene, &bundles);
         for contestant in contestants(&scene, &bundles, Bounces::Each(8)) {
@@ -194,7 +193,8 @@ fn glossy_surfaces_send_out_their_albedo() {
     for exponent in [0.0, 4.0, 50.0] {
         let gloss = Phong::new(vec![0.9, 0.4], exponent).unwrap();
         let albedo = |band| {
-            let at = |cosine: f64| gloss.albedo(band, Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine)) * 2.0 * cosine;
+            let at =
+                |cosine: f64| gloss.albedo(band, Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine)) * 2.0 * cosine;
             gauss(64).iter().map(|(cosine, weight)| weight * at(*cosine)).sum::<f64>()
         };
         let [floor, walls @ ..] = cube();

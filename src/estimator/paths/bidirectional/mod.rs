@@ -46,7 +46,11 @@ pub struct Bidirectional<'a> {
 enum Part {
     All,
     /// One alone: unweighted, or with the weight that it has among all.
-    One { n_light: usize, n_eye: usize, is_weighted: bool },
+    One {
+        n_light: usize,
+        n_eye: usize,
+        is_weighted: bool,
+    },
 }
 
 impl<'a> Bidirectional<'a> {

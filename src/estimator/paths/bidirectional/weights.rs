@@ -106,7 +106,8 @@ mod tests {
                         heuristic.power(eye * (t..n).map(|j| factor(j, &from_light)).product::<f64>())
                     };
                     let whole = weights[n - 1] / p(n);
-                    let follows = |t: usize| weights[t - 1] == 0.0 || (weights[t - 1] / p(t) / whole - 1.0).abs() < 1e-10;
+                    let follows =
+                        |t: usize| weights[t - 1] == 0.0 || (weights[t - 1] / p(t) / whole - 1.0).abs() < 1e-10;
                     assert!((1..=n).all(follows), "{n} vertices, {mirrors:b}: {weights:?}");
                 }
             }
