@@ -289,6 +289,7 @@ fn estimate_growing(
         truth: match estimator.truth() {
             Truth::Discrete => "discrete",
             Truth::Continuous => "continuous",
+            Truth::Smoothed => "smoothed",
         }
         .to_string(),
         worst_z: verdict.worst_z,
