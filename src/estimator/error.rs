@@ -1,5 +1,6 @@
 //! Why an equation or a scene cannot be sampled.
 
+use super::Kernel;
 use crate::sampling::AliasError;
 use thiserror::Error;
 
@@ -30,6 +31,10 @@ pub enum EstimatorError {
     ForeignBundles { element: usize, facet: usize, n_facets: usize },
     #[error("strategy ({n_light}, 0) has no vertex on the bundle: that is light tracing")]
     NoEyeVertex { n_light: usize },
+    #[error(
+        "{n_photons} photons through {kernel:?}: there must be some, within a radius above zero or at least the 3 nearest"
+    )]
+    Kernel { n_photons: usize, kernel: Kernel },
     #[error("the probability that paths go on is {survival:e}, must be above 0 and at most 1")]
     Survival { survival: f64 },
 }

@@ -16,7 +16,7 @@ mod walks;
 pub use bounces::Bounces;
 pub use error::EstimatorError;
 pub use estimate::{Estimate, MergeError, WeightedMean};
-pub use paths::{Bidirectional, Heuristic, LightTracer, PathTracer, Roulette, Sampling};
+pub use paths::{Bidirectional, Heuristic, Kernel, LightTracer, PathTracer, PhotonDensity, Roulette, Sampling};
 pub use run::{estimate, estimate_range, estimate_watched};
 pub use score::Score;
 pub use walks::{
@@ -36,6 +36,8 @@ pub enum Truth {
     Discrete,
     /// The scene's own radiance, averaged over the étendue of every bundle.
     Continuous,
+    /// The scene's own radiance smoothed by the kernel of a density estimate, and so biased by its width; or that bias itself.
+    Smoothed,
 }
 
 impl fmt::Display for Truth {
@@ -43,6 +45,7 @@ impl fmt::Display for Truth {
         f.write_str(match self {
             Self::Discrete => "discrete",
             Self::Continuous => "continuous",
+            Self::Smoothed => "smoothed",
         })
     }
 }

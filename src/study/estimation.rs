@@ -4,7 +4,7 @@ use super::outcome::{EstimatorRun, SamplePoint};
 use super::{StudyError, StudySettings};
 use crate::assembly::System;
 use crate::compare::{compare_blocks, pooled, relative_rms};
-use crate::estimator::{Estimate, Estimator, Truth, estimate_watched};
+use crate::estimator::{Estimate, Estimator, estimate_watched};
 use crate::linalg::{Block, max_abs};
 use crate::stats::fit_power_law;
 use std::time::Instant;
@@ -50,11 +50,7 @@ pub(super) fn estimate_growing(
     let (n, errors): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (p.samples_per_bundle as f64, p.error)).unzip();
     let run = EstimatorRun {
         estimator: estimator.name().to_string(),
-        truth: match estimator.truth() {
-            Truth::Discrete => "discrete",
-            Truth::Continuous => "continuous",
-        }
-        .to_string(),
+        truth: estimator.truth().to_string(),
         worst_z: verdict.worst_z,
         n_comparisons: verdict.n_comparisons,
         p_value: verdict.p_value,

@@ -27,6 +27,7 @@ mod operators;
 mod orbits;
 mod pairs;
 mod patches;
+mod paths;
 mod refinement;
 mod report;
 mod sampling;

@@ -1,6 +1,7 @@
 //! Light paths in the scene itself: the continuous truth.
 
 mod bidirectional;
+mod density;
 mod emitters;
 mod heuristic;
 mod light_tracer;
@@ -12,6 +13,7 @@ mod stage;
 mod white;
 
 pub use bidirectional::Bidirectional;
+pub use density::{Kernel, PhotonDensity};
 pub use heuristic::Heuristic;
 pub use light_tracer::LightTracer;
 pub use path_tracer::{PathTracer, Sampling};

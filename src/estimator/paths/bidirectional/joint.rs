@@ -14,8 +14,8 @@ pub(super) struct Joint {
     pub light_reverse: [f64; 2],
 }
 
-/// Joins the last vertices of the two paths; `None` where no light gets through. Without a path from the light, the path from the bundle
-/// is taken to have met an emitter.
+/// Joins the last vertices of the two paths, taken to see each other; `None` where no light goes that way. Without a path from the light,
+/// the path from the bundle is taken to have met an emitter.
 pub(super) fn join(stage: &Stage<'_>, light: &[Node<'_>], eye: &[Node<'_>]) -> Option<Joint> {
     let end = eye.last()?;
     match light.last() {
@@ -37,7 +37,7 @@ fn meet(stage: &Stage<'_>, end: &Node<'_>) -> Option<Joint> {
     Some(Joint { light, eye_reverse: [density, before], light_reverse: [0.0; 2] })
 }
 
-/// The two last vertices see each other: f cosθ cosθ′/r² f′ V times what both paths carry.
+/// The two last vertices are joined: f cosθ cosθ′/r² f′ times what both paths carry.
 fn connect(stage: &Stage<'_>, start: &Node<'_>, end: &Node<'_>) -> Option<Joint> {
     if start.is_delta() || end.is_delta() || stage.tracer.coplanar(start.facet, end.facet) {
         return None;
@@ -50,12 +50,11 @@ fn connect(stage: &Stage<'_>, start: &Node<'_>, end: &Node<'_>) -> Option<Joint>
         return None;
     }
 
-    // Multiply it all up before asking whether the way is free.
     let mut light = end.throughput.clone();
     light.iter_mut().zip(start.throughput.iter()).for_each(|(light, carried)| *light *= carried);
     end.scale(to_light, to_light.z / distance_squared, &mut light);
     start.scale(to_eye, to_eye.z, &mut light);
-    if light.max() <= 0.0 || stage.tracer.occluded(end.position, start.position, [end.facet, start.facet]) {
+    if light.max() <= 0.0 {
         return None;
     }
     let eye_reverse = [start.density(to_eye) * to_light.z / distance_squared, end.density_back(to_light)];

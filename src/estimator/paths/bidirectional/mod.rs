@@ -30,7 +30,7 @@ use super::{Heuristic, Roulette};
 use crate::basis::Bundles;
 use crate::sampling::Stream;
 use crate::scene::Scene;
-use subpath::Node;
+use subpath::{Node, Walker};
 
 /// Pairs of paths whose mean is the continuous radiance of every bundle.
 pub struct Bidirectional<'a> {
@@ -114,20 +114,30 @@ impl<'a> Bidirectional<'a> {
         }
     }
 
-    /// Adds what the path that ends at the last of the light's vertices (`None` if it has none) and that of the eye's is worth.
-    fn join(&self, light: &[Node<'_>], eye: &[Node<'_>], totals: &mut [f64]) {
+    /// Adds what the path that joins the last of the light's vertices, if it has any, and of the eye's is worth. Returns how many rays it cast.
+    fn join(&self, light: &[Node<'_>], eye: &[Node<'_>], totals: &mut [f64]) -> u64 {
         let is_weighted = match self.part {
             Part::All => true,
             Part::One { n_light, n_eye, is_weighted } => {
                 if (light.len(), eye.len()) != (n_light, n_eye) {
-                    return;
+                    return 0;
                 }
                 is_weighted
             }
         };
-        let Some(joint) = joint::join(&self.stage, light, eye) else { return };
+        let Some(joint) = joint::join(&self.stage, light, eye) else { return 0 };
+
+        // Ask whether the way between them is free.
+        let mut n_rays = 0;
+        if let (Some(start), Some(end)) = (light.last(), eye.last()) {
+            n_rays = 1;
+            if self.stage.tracer.occluded(end.position, start.position, [end.facet, start.facet]) {
+                return n_rays;
+            }
+        }
         let weight = if is_weighted { weights::weight(self.heuristic, light, eye, &joint) } else { 1.0 };
         totals.iter_mut().zip(joint.light.iter()).for_each(|(total, light)| *total += weight * light);
+        n_rays
     }
 }
 
@@ -155,14 +165,16 @@ impl Estimator for Bidirectional<'_> {
     fn sample(&self, start: usize, stream: &mut Stream, score: &mut Score) {
         let (most_light, most_eye) = self.most_vertices();
         let stage = &self.stage;
-        let eye =
-            subpath::from_bundle(stage, stage.patches[start], self.roulette, most_eye, self.columns.n_bands, stream);
-        let light = subpath::from_light(stage, self.roulette, most_light, self.columns.n_bands, stream);
+        let walker = Walker { stage, roulette: self.roulette, n_bands: self.columns.n_bands };
+        let (eye, n_eye_rays) = walker.from_bundle(stage.patches[start], most_eye, stream);
+        let (light, n_light_rays) = walker.from_light(most_light, stream);
+        let mut n_rays = n_eye_rays + n_light_rays;
         for t in 1..=eye.len() {
             for s in 0..=light.len() {
                 let Some(here) = self.columns.of(s + t - 1) else { break };
-                self.join(&light[..s], &eye[..t], &mut score.totals(start)[here]);
+                n_rays += self.join(&light[..s], &eye[..t], &mut score.totals(start)[here]);
             }
         }
+        score.count_steps(n_rays);
     }
 }

@@ -2,12 +2,13 @@
 
 use super::super::super::bands::Bands;
 use super::super::Roulette;
-use super::super::reflection::Reflection;
+use super::super::reflection::{Reflection, Turn};
 use super::super::stage::{Stage, Vertex};
 use crate::basis::Patch;
 use crate::geometry::{Frame, Vec3};
 use crate::sampling::{Stream, warp};
 use crate::scene::Side;
+use std::f64::consts::PI;
 
 /// A vertex of a path from the bundle or from the light. "Before" is towards the end that the path started from, "behind" the other way.
 #[derive(Clone)]
@@ -79,96 +80,83 @@ impl<'a> Node<'a> {
     }
 }
 
-/// A path that starts in the étendue of a bundle, of at most so many vertices.
-pub(super) fn from_bundle<'s>(
-    stage: &'s Stage<'_>,
-    patch: &Patch,
-    roulette: Roulette,
-    most: usize,
-    n_bands: usize,
-    stream: &mut Stream,
-) -> Vec<Node<'s>> {
-    let Some(vertex) = stage.leave(patch, stream).filter(|_| most > 0) else { return Vec::new() };
-    let mut path = vec![Node::reflecting(&vertex, Bands::all(1.0, n_bands), 1.0, 0.0)];
-    extend(stage, roulette, most, 1.0, stream, &mut path);
-    path
+/// Makes paths.
+#[derive(Clone, Copy)]
+pub(super) struct Walker<'s, 'a> {
+    pub stage: &'s Stage<'a>,
+    pub roulette: Roulette,
+    pub n_bands: usize,
 }
 
-/// A path that starts on an emitter, of at most so many vertices.
-pub(super) fn from_light<'s>(
-    stage: &'s Stage<'_>,
-    roulette: Roulette,
-    most: usize,
-    n_bands: usize,
-    stream: &mut Stream,
-) -> Vec<Node<'s>> {
-    if most == 0 {
-        return Vec::new();
+impl<'s> Walker<'s, '_> {
+    /// A path that starts in the étendue of a bundle, of at most so many vertices, and how many rays it took.
+    pub fn from_bundle(self, patch: &Patch, most: usize, stream: &mut Stream) -> (Vec<Node<'s>>, u64) {
+        let Some(vertex) = self.stage.leave(patch, stream).filter(|_| most > 0) else { return (Vec::new(), 0) };
+        let mut path = vec![Node::reflecting(&vertex, Bands::all(1.0, self.n_bands), 1.0, 0.0)];
+        let n_rays = self.extend(most, stream, &mut path);
+        (path, n_rays)
     }
-    let (emitter, position) = stage.emitters.point(stream);
-    let mut throughput = Bands::all(1.0 / emitter.density, n_bands);
-    throughput.iter_mut().zip(emitter.emission).for_each(|(carried, emission)| *carried *= emission);
-    let sent = throughput.max();
-    let face = stage.face(emitter.facet, Side::Front);
-    let mut path = vec![Node {
-        facet: emitter.facet,
-        side: Side::Front,
-        position,
-        frame: &face.frame,
-        turning: Turning::Emission,
-        throughput,
-        forward: emitter.density,
-        reverse: 0.0,
-        back: 0.0,
-    }];
-    extend(stage, roulette, most, sent, stream, &mut path);
-    path
-}
 
-/// Lets a path go on until it escapes, is absorbed, or has so many vertices. `unit` is the throughput that counts as one.
-fn extend<'s>(
-    stage: &'s Stage<'_>,
-    roulette: Roulette,
-    most: usize,
-    unit: f64,
-    stream: &mut Stream,
-    path: &mut Vec<Node<'s>>,
-) {
-    while let Some(here) = path.last().filter(|_| path.len() < most) {
-        // Draw a direction, and what the path carries that way.
-        let mut throughput = here.throughput.clone();
-        let (direction, density) = match here.turning {
-            Turning::Emission => {
-                let direction = warp::cosine_hemisphere(stream.uniform2());
-                throughput.iter_mut().for_each(|carried| *carried *= std::f64::consts::PI);
-                (Vec3::from(direction), warp::cosine_hemisphere_pdf(direction))
-            }
-            Turning::Reflection { reflection, given } => {
-                let Some(turn) = reflection.turn(given, stream.uniform2(), &mut throughput) else { return };
-                (turn.direction, turn.density)
-            }
-        };
-        // The light's first step loses nothing: bounces are counted from the first reflection on either side.
-        if let Turning::Reflection { .. } = here.turning {
-            let survival = roulette.survival(path.len(), throughput.max() / unit);
-            if survival < 1.0 {
-                if stream.uniform() >= survival {
-                    return;
+    /// A path that starts on an emitter, of at most so many vertices, and how many rays it took.
+    pub fn from_light(self, most: usize, stream: &mut Stream) -> (Vec<Node<'s>>, u64) {
+        if most == 0 {
+            return (Vec::new(), 0);
+        }
+        let (emitter, position) = self.stage.emitters.point(stream);
+        let mut throughput = Bands::all(1.0 / emitter.density, self.n_bands);
+        throughput.iter_mut().zip(emitter.emission).for_each(|(carried, emission)| *carried *= emission);
+        let mut path = vec![Node {
+            facet: emitter.facet,
+            side: Side::Front,
+            position,
+            frame: &self.stage.face(emitter.facet, Side::Front).frame,
+            turning: Turning::Emission,
+            throughput,
+            forward: emitter.density,
+            reverse: 0.0,
+            back: 0.0,
+        }];
+        let n_rays = self.extend(most, stream, &mut path);
+        (path, n_rays)
+    }
+
+    /// Lets a path go on until it escapes, is absorbed, or has so many vertices. Returns how many rays it took.
+    fn extend(self, most: usize, stream: &mut Stream, path: &mut Vec<Node<'s>>) -> u64 {
+        let mut n_rays = 0;
+        let mut sent = path.last().map_or(0.0, |first| first.throughput.max());
+        while let Some(here) = path.last().filter(|_| path.len() < most) {
+            // Draw a direction; what is reflected survives or not.
+            let mut throughput = here.throughput.clone();
+            let turn = match here.turning {
+                Turning::Emission => {
+                    let direction = warp::cosine_hemisphere(stream.uniform2());
+                    throughput.iter_mut().for_each(|carried| *carried *= PI);
+                    sent *= PI;
+                    Turn { direction: direction.into(), density: warp::cosine_hemisphere_pdf(direction) }
                 }
-                throughput.iter_mut().for_each(|carried| *carried /= survival);
-            }
-        }
+                Turning::Reflection { reflection, given } => {
+                    let turn = reflection.turn(given, stream.uniform2(), &mut throughput);
+                    let survival = self.roulette.survival(path.len(), throughput.max() / sent);
+                    let Some(turn) = turn.filter(|_| survival >= 1.0 || stream.uniform() < survival) else { break };
+                    throughput.iter_mut().for_each(|carried| *carried /= survival.min(1.0));
+                    turn
+                }
+            };
 
-        // Go there, and tell the vertex before how likely it was the other way.
-        let reverse = here.density_back(direction);
-        let Some(arrival) = stage.follow(here.facet, here.position, here.frame.to_world(direction)) else { return };
-        let distance_squared = arrival.distance * arrival.distance;
-        let forward = density * arrival.given.z / distance_squared;
-        let back = direction.z / distance_squared;
-        let Some(vertex) = stage.vertex(&arrival) else { return };
-        if let [.., before, _] = &mut path[..] {
-            before.reverse = reverse;
+            // Go there, and tell the vertex before how likely it was the other way.
+            let reverse = here.density_back(turn.direction);
+            let direction = here.frame.to_world(turn.direction);
+            n_rays += 1;
+            let Some(arrival) = self.stage.follow(here.facet, here.position, direction) else { break };
+            let distance_squared = arrival.distance * arrival.distance;
+            let forward = turn.density * arrival.given.z / distance_squared;
+            let back = turn.direction.z / distance_squared;
+            let Some(vertex) = self.stage.vertex(&arrival) else { break };
+            if let [.., before, _] = &mut path[..] {
+                before.reverse = reverse;
+            }
+            path.push(Node::reflecting(&vertex, throughput, forward, back));
         }
-        path.push(Node::reflecting(&vertex, throughput, forward, back));
+        n_rays
     }
 }
