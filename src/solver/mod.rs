@@ -17,7 +17,7 @@ mod self_adjoint;
 pub mod spectrum;
 mod stationary;
 
-pub use accelerated::{CoarseSpace, DeflatedCg, DeflatedGmres, Perron, TwoGrid};
+pub use accelerated::{CoarseSpace, DeflatedCg, DeflatedGmres, Multigrid, Perron, TwoGrid};
 pub use attempt::Attempt;
 pub use bracket::Bracket;
 pub use budget::{BUDGET, Budget};
@@ -139,6 +139,7 @@ pub fn all(tolerance: f64) -> Vec<Box<dyn Solver>> {
         Box::new(DeflatedCg { tolerance, n_groups: None }),
         Box::new(DeflatedGmres { tolerance, n_groups: None }),
         Box::new(TwoGrid { tolerance, n_groups: None }),
+        Box::new(Multigrid { tolerance, n_visits: 2 }),
         Box::new(Perron { tolerance }),
     ]
 }

@@ -17,7 +17,7 @@
 use super::super::monitor::Monitor;
 use super::super::report::{band_residual, relative_residual};
 use super::super::{Attempt, Observer, SolveError, Solver};
-use super::coarse::{self, Coarse};
+use super::coarse::{self, Coarse, Wanted};
 use super::shifted::Shifted;
 use super::two_grid::level;
 use crate::linalg::{Block, Equation, max_abs};
@@ -67,7 +67,8 @@ impl Solver for DeflatedCg {
         let probes = [probe(1.618_033_988_749_895), probe(2.414_213_562_373_095)];
         let mut images: [Block; 3] = std::array::from_fn(|_| Block::zeros(n, n_bands));
         let sources = [equation.emission, &probes[0], &probes[1]];
-        let coarse = Coarse::new(method, equation, aggregation, weights.clone(), &sources, &mut images)?;
+        let mut coarse =
+            Coarse::new(method, equation, aggregation, Wanted::Factor, weights.clone(), &sources, &mut images)?;
         monitor.work.products += coarse.setup_work();
         let [mut r, kx, ky] = images;
         check_symmetry(method, &coarse, &probes, [&kx, &ky])?;
