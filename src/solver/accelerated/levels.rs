@@ -61,7 +61,8 @@ impl Levels {
                 _ => onto[k - 1].onto(aggregation).unwrap_or_else(|| Aggregation::whole(weight.len())),
             };
             let (n, m) = (weight.len(), next.n_groups());
-            let (mut coarser, mut coarser_losses, mut coarser_weight) = (Dense::zeros(m, m), vec![0.0; m], vec![0.0; m]);
+            let (mut coarser, mut coarser_losses, mut coarser_weight) =
+                (Dense::zeros(m, m), vec![0.0; m], vec![0.0; m]);
             for (i, group) in next.groups().enumerate() {
                 coarser_losses[group] += losses[i];
                 coarser_weight[group] += weight[i];
@@ -156,7 +157,12 @@ impl Level {
     }
 
     /// One bounce, and corrections by the next level; β.
-    fn smooth_and_correct(&mut self, mut constant: f64, n_visits: usize, mut answer: impl FnMut(&mut [f64]) -> f64) -> f64 {
+    fn smooth_and_correct(
+        &mut self,
+        mut constant: f64,
+        n_visits: usize,
+        mut answer: impl FnMut(&mut [f64]) -> f64,
+    ) -> f64 {
         self.x.add_scaled(1.0, &self.residual);
         self.transport.apply(&self.residual, &mut self.image);
         std::mem::swap(&mut self.residual, &mut self.image);

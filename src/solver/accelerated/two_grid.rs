@@ -199,8 +199,7 @@ pub(super) fn iterate<'a>(
         is_first = false;
 
         // Show one bounce more, which the residual is: what that leaves is no larger where no row gains.
-        field.write(&coarse, &mut radiance);
-        radiance.add_scaled(1.0, &residual);
+        field.write(&coarse, Some(&residual), &mut radiance);
         if let Some(stop) = monitor.check(relative_residual(equation.emission, &residual), &radiance)? {
             break stop;
         }
@@ -210,7 +209,5 @@ pub(super) fn iterate<'a>(
         monitor.count_applies(1);
         field.rest.add_scaled(1.0, &step);
     };
-    let mut radiance = field.doubled(&coarse);
-    radiance.add(&residual);
-    Ok(Attempt::ended(radiance, stop, monitor))
+    Ok(Attempt::ended(field.doubled(&coarse, Some(&residual)), stop, monitor))
 }
