@@ -46,7 +46,7 @@ fn read(words: &[f64]) -> u64 {
     pulp::Arch::new().dispatch(|| {
         let mut sums = [0u64; 16];
         words.as_chunks::<16>().0.iter().for_each(|chunk| bits(chunk, &mut sums));
-        sums.iter().fold(0, |a, b| a.wrapping_add(*b))
+        sums.iter().fold(0u64, |a, b| a.wrapping_add(*b))
     })
 }
 
