@@ -1,7 +1,8 @@
 //! Deterministic answers to L = E + K L, one file a method: direct, stationary and Krylov. Knows operators and vectors, never a scene.
 //!
 //! Every method is a struct of its parameters and a [`Solver`]. Iterative ones stop when ‖E + K L − L‖∞ ≤ tolerance · ‖E‖∞ in every
-//! band; running out of budget is a status, divergence and singularity are errors.
+//! band; running out of budget is a status, divergence and singularity are errors. What a method answers is looked at by a residual that
+//! keeps its digits however little is absorbed, and corrected until it stands that: see [`SolveReport::n_refinements`].
 
 mod accelerated;
 mod attempt;
@@ -17,7 +18,7 @@ mod self_adjoint;
 pub mod spectrum;
 mod stationary;
 
-pub use accelerated::{CoarseSpace, DeflatedCg, DeflatedGmres, Perron, TwoGrid};
+pub use accelerated::{CoarseSpace, DeflatedCg, DeflatedGmres, Multigrid, Perron, TwoGrid};
 pub use attempt::Attempt;
 pub use bracket::Bracket;
 pub use budget::{BUDGET, Budget};
@@ -139,6 +140,7 @@ pub fn all(tolerance: f64) -> Vec<Box<dyn Solver>> {
         Box::new(DeflatedCg { tolerance, n_groups: None }),
         Box::new(DeflatedGmres { tolerance, n_groups: None }),
         Box::new(TwoGrid { tolerance, n_groups: None }),
+        Box::new(Multigrid { tolerance, n_visits: 2 }),
         Box::new(Perron { tolerance }),
     ]
 }

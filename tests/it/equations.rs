@@ -30,7 +30,7 @@ fn error_of(solver: &dyn Solver, equation: Equation<'_>) -> SolveError {
     }
 }
 
-const ON_COARSE_SPACES: [&str; 4] = ["deflated-cg", "deflated-gmres", "two-grid", "perron"];
+const ON_COARSE_SPACES: [&str; 5] = ["deflated-cg", "deflated-gmres", "two-grid", "multigrid", "perron"];
 
 /// The methods that K alone drives.
 fn stationary() -> Vec<Box<dyn Solver>> {

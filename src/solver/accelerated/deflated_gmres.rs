@@ -13,7 +13,7 @@ use super::super::krylov::minimise;
 use super::super::monitor::Monitor;
 use super::super::report::Work;
 use super::super::{Attempt, Observer, Preconditioner, Prepared, SolveError, Solver};
-use super::coarse::Coarse;
+use super::coarse::{Coarse, Wanted};
 use super::two_grid::{level, weights_or_ones};
 use crate::linalg::{Block, Equation};
 
@@ -60,7 +60,8 @@ impl Preconditioner for CoarseSpace {
         work: &mut Work,
     ) -> Result<Box<dyn Prepared + 'a>, SolveError> {
         let aggregation = level(equation, self.n_groups);
-        let coarse = Coarse::new(method, equation, aggregation, weights_or_ones(equation), &[], &mut [])?;
+        let weights = weights_or_ones(equation);
+        let coarse = Coarse::new(method, equation, aggregation, Wanted::Factor, weights, &[], &mut [])?;
         work.products += coarse.setup_work();
         let gathered = vec![0.0; coarse.n_groups()];
         Ok(Box::new(Ready { coarse, gathered }))

@@ -18,18 +18,20 @@ impl Shifted {
         Self { constants: vec![0.0; emission.n_columns()], rest: emission.clone() }
     }
 
-    /// out ← α P 1 + v.
-    pub fn write(&self, coarse: &Coarse, out: &mut Block) {
+    /// out ← α P 1 + v + more.
+    pub fn write(&self, coarse: &Coarse, more: Option<&Block>, out: &mut Block) {
         out.copy_from(&self.rest);
+        more.iter().for_each(|more| out.add_scaled(1.0, more));
         for (band, constant) in self.constants.iter().enumerate() {
             coarse.prolong_constant(band, *constant, out.column_mut(band));
         }
     }
 
-    /// α P 1 + v, with what rounding takes from it.
-    pub fn doubled(&self, coarse: &Coarse) -> Doubled {
-        let mut sum = Doubled::from(self.rest.clone());
+    /// The same, with what rounding takes from it.
+    pub fn doubled(mut self, coarse: &Coarse, more: Option<&Block>) -> Doubled {
+        more.iter().for_each(|more| self.rest.add_scaled(1.0, more));
         let mut constant = vec![0.0; self.rest.n_rows()];
+        let mut sum = Doubled::from(self.rest);
         for (band, alpha) in self.constants.iter().enumerate() {
             constant.fill(0.0);
             coarse.prolong_constant(band, *alpha, &mut constant);

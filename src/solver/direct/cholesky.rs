@@ -30,7 +30,7 @@ impl Solver for Cholesky {
 
     fn attempt<'a>(&self, equation: Equation<'a>, _: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         solve_symmetrised(self.name(), equation, |form, band, weight| {
-            Ok((Box::new(CholeskyFactor::new(&symmetrised(form, band, weight))?), None))
+            Ok((Box::new(CholeskyFactor::new(&Symmetrised::new(form, band, weight).dense())?), None))
         })
     }
 }
@@ -84,29 +84,46 @@ fn substitute_weighted(factors: &dyn Factorization, weight: &[f64], column: &mut
     u.iter_mut().zip(weight).for_each(|(u, w)| *u /= w);
 }
 
-/// I − M^½ S^½ G S^½ M^−½ of one band.
-pub(super) fn symmetrised(form: SelfAdjoint<'_>, band: usize, weight: &[f64]) -> Dense {
-    let n = weight.len();
-    let root = Sparse::from_operator(form.scattering_root, band);
-    let mut matrix = Dense::zeros(n, n);
-    matrix.values_mut().par_chunks_mut(n.max(1)).enumerate().for_each_init(
-        || (vec![0.0; n], vec![0.0; n]),
-        |(row, mixed), (i, out)| {
-            // Row i of S^½ G, mixed from the rows of G that the element of i couples.
-            mixed.fill(0.0);
-            let (columns, values) = root.row_entries(i);
-            for (k, s) in columns.iter().zip(values) {
-                form.propagation.row(band, *k as usize, row);
-                mixed.iter_mut().zip(row.iter()).for_each(|(m, g)| *m += s * g);
-            }
-            // Times S^½ on the right, weighted and taken from the identity.
-            for (l, m) in mixed.iter().enumerate() {
-                let (columns, values) = root.row_entries(l);
-                columns.iter().zip(values).for_each(|(j, s)| out[*j as usize] -= m * s);
-            }
-            out.iter_mut().zip(weight).for_each(|(v, w)| *v *= weight[i] / w);
-            out[i] += 1.0;
-        },
-    );
-    matrix
+/// I − M^½ S^½ G S^½ M^−½ of one band, row by row.
+pub(super) struct Symmetrised<'a> {
+    form: SelfAdjoint<'a>,
+    /// M^½.
+    weight: &'a [f64],
+    /// S^½.
+    root: Sparse,
+}
+
+impl<'a> Symmetrised<'a> {
+    pub fn new(form: SelfAdjoint<'a>, band: usize, weight: &'a [f64]) -> Self {
+        Self { form, weight, root: Sparse::from_operator(form.scattering_root, band) }
+    }
+
+    /// out ← row i; `row` and `mixed` are room to work in.
+    pub fn write_row(&self, i: usize, [row, mixed]: [&mut [f64]; 2], out: &mut [f64]) {
+        // Row i of S^½ G, mixed from the rows of G that the element of i couples.
+        mixed.fill(0.0);
+        let (columns, values) = self.root.row_entries(i);
+        for (k, s) in columns.iter().zip(values) {
+            self.form.propagation.row(0, *k as usize, row);
+            mixed.iter_mut().zip(row.iter()).for_each(|(m, g)| *m += s * g);
+        }
+        // Times S^½ on the right, weighted and taken from the identity.
+        out.fill(0.0);
+        for (l, m) in mixed.iter().enumerate().filter(|(_, m)| **m != 0.0) {
+            let (columns, values) = self.root.row_entries(l);
+            columns.iter().zip(values).for_each(|(j, s)| out[*j as usize] -= m * s);
+        }
+        out.iter_mut().zip(self.weight).for_each(|(v, w)| *v *= self.weight[i] / w);
+        out[i] += 1.0;
+    }
+
+    fn dense(&self) -> Dense {
+        let n = self.weight.len();
+        let mut matrix = Dense::zeros(n, n);
+        matrix.values_mut().par_chunks_mut(n.max(1)).enumerate().for_each_init(
+            || (vec![0.0; n], vec![0.0; n]),
+            |(row, mixed), (i, out)| self.write_row(i, [row, mixed], out),
+        );
+        matrix
+    }
 }
