@@ -36,5 +36,6 @@ mod solvers;
 mod spectrum;
 mod sphere;
 mod stats;
+mod study;
 mod threads;
 mod tracing;
