@@ -93,7 +93,15 @@ fn finding(refinement: &Refinement) -> String {
         error if error.is_nan() => "one mesh alone tells no discretisation error".to_string(),
         error => {
             let verdict = if refinement.agrees { "agree" } else { "DISAGREE" };
-            format!("{order}, finest mesh {:.2} % off the continuous truth, surface means {verdict}", 100.0 * error)
+            let n_dark = refinement.surfaces.iter().filter(|mean| !mean.is_comparable).count();
+            let left_out = match n_dark {
+                0 => String::new(),
+                n => format!(" ({n} of {} on too few paths to tell)", refinement.surfaces.len()),
+            };
+            format!(
+                "{order}, finest mesh {:.2} % off the continuous truth, surface means {verdict}{left_out}",
+                100.0 * error
+            )
         }
     }
 }

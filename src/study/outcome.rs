@@ -225,7 +225,8 @@ pub struct Refinement {
     /// Discretisation error of the finest level's mean reflected radiance, relative: the larger of what the levels extrapolate to
     /// and what was measured beyond noise. NaN where there is one mesh only.
     pub finest_error: f64,
-    /// True if every surface's mean at the finest level agrees with the path tracer within discretisation plus statistical error.
+    /// True if every surface's mean at the finest level that can be compared, at least one, agrees with the path tracer within
+    /// discretisation plus statistical error.
     pub agrees: bool,
     pub surfaces: Vec<SurfaceMean>,
 }
@@ -252,6 +253,8 @@ pub struct SurfaceMean {
     pub standard_error: f64,
     /// Estimated discretisation error of `matrix`.
     pub discretisation_error: f64,
+    /// False where so few paths have found light that their mean and its standard error mean nothing.
+    pub is_comparable: bool,
 }
 
 /// The solved scene from its camera, linear radiance.

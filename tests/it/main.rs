@@ -41,6 +41,7 @@ mod spectrum;
 mod sphere;
 mod stats;
 mod tails;
+mod study;
 mod threads;
 mod tracing;
 mod verdicts;

@@ -2,6 +2,7 @@
 
 use super::axis::Axis;
 use super::families::{Group, groups};
+use super::paint::text_width;
 use super::palette::{Look, look};
 use super::panel::{NORMAL, Panel, SMALL, spread};
 use super::sheet::{Anchor, GREY, INK, Point, Sheet, Stroke};
@@ -28,6 +29,7 @@ const LANE: f64 = 16.0;
 /// Labels nearer than this share of the axis would run into each other.
 const CLOSEST_LABELS: f64 = 0.1;
 
+const GUIDE: Stroke = Stroke { colour: GREY, width: 0.75, dash: None };
 const BUDGET: Stroke = Stroke { colour: INK, width: 0.75, dash: Some((5.0, 3.5)) };
 
 /// One panel: its methods, by their places in a level, and those of them that ran out of products somewhere.
@@ -56,7 +58,9 @@ pub fn albedos(study: &AlbedoStudy) -> Sheet {
     let rows: Vec<&[Part]> = parts.chunks(n_columns).collect();
     let heads = rows.iter().map(|row| row.iter().map(|part| part.lanes.len()).max().unwrap_or(0) as f64 * LANE);
     let heads: Vec<f64> = heads.collect();
-    let total = TOP + heads.iter().sum::<f64>() + rows.len() as f64 * (height + ROW_GAP) - ROW_GAP + FOOT;
+    let has_free_cell = parts.len() == 3;
+    let foot = if has_free_cell { FOOT } else { FOOT + 30.0 };
+    let total = TOP + heads.iter().sum::<f64>() + rows.len() as f64 * (height + ROW_GAP) - ROW_GAP + foot;
     let mut sheet = Sheet::new(WIDTH, total.ceil() as u32);
 
     // Share the axes between all panels.
@@ -64,24 +68,30 @@ pub fn albedos(study: &AlbedoStudy) -> Sheet {
     let x = abscissa(study, parts.len() == 1);
     let y = Axis::log_tight(all.filter(|v| *v <= study.budget).chain([0.7 * study.budget])).up_to(study.budget);
     let width = f64::from(WIDTH) / n_columns as f64;
-    let has_free_cell = parts.len() == 3;
     let mut top = TOP;
     for (row, head) in rows.iter().zip(heads) {
         for (column, part) in row.iter().enumerate() {
             let (left, right) = (LEFT + column as f64 * width, (column + 1) as f64 * width - NAMES);
             let (x, y) = (x.clone(), y.clone());
             let panel = Panel { left, top: top + head, right, bottom: top + head + height, x, y };
-            draw(&mut sheet, &panel, study, part, !has_free_cell);
+            draw(&mut sheet, &panel, study, part);
         }
         top += head + height + ROW_GAP;
     }
-    if has_free_cell {
-        draw_key(&mut sheet, study, (LEFT + width, top - height - ROW_GAP + 24.0));
+    let words = key_words(study);
+    let mut places = [(18.0, total - 18.0); 4];
+    for (k, place) in places.iter_mut().enumerate() {
+        if has_free_cell {
+            *place = (LEFT + width, top - height - ROW_GAP + 24.0 + 26.0 * k as f64);
+        } else {
+            place.0 += words[..k].iter().map(|text| text_width(text, SMALL) + 50.0).sum::<f64>();
+        }
     }
+    draw_key(&mut sheet, &words, places);
     sheet
 }
 
-fn draw(sheet: &mut Sheet, panel: &Panel, study: &AlbedoStudy, part: &Part, is_annotated: bool) {
+fn draw(sheet: &mut Sheet, panel: &Panel, study: &AlbedoStudy, part: &Part) {
     let Part { group, members, lanes } = part;
     let title = match group.title {
         "" => "Products with K".to_string(),
@@ -102,21 +112,26 @@ fn draw(sheet: &mut Sheet, panel: &Panel, study: &AlbedoStudy, part: &Part, is_a
         sheet.area(corners.to_vec(), GREY, 0.1);
     }
     panel.line(sheet, [panel.x.ends().0, panel.x.ends().1].map(|x| (x, study.budget)), BUDGET);
-    if is_annotated {
-        sheet.words((panel.left + 6.0, panel.top + 10.0), budget(study), SMALL, GREY, Anchor::Start);
-    }
-    draw_guides(sheet, panel, study, is_annotated);
+    draw_guides(sheet, panel, study);
 
-    // A line ends where a method ran out; the lane has its marker.
+    // A line is dashed on its way to where a method ran out; the lane has its marker.
     let place = |level: usize, i: usize| -> Option<Point> {
         let AlbedoLevel { albedo, runs } = &study.levels[level];
         let at = panel.place(1.0 - albedo, runs[i].products)?;
         Some(if is_unfinished(&runs[i]) { (at.0, lane_of(i)) } else { at })
     };
     for (i, look) in members {
-        let series = study.levels.iter().map(|level| (1.0 - level.albedo, level.runs[*i].products.min(study.budget)));
-        let first_out = study.levels.iter().position(|level| is_unfinished(&level.runs[*i]));
-        panel.line(sheet, series.take(first_out.map_or(usize::MAX, |k| k + 1)), look.stroke());
+        for pair in study.levels.windows(2) {
+            let ends = [&pair[0], &pair[1]];
+            // What was refused has no products, which are then not a number.
+            let within = |products: f64| if products > study.budget { study.budget } else { products };
+            let line = ends.map(|level| (1.0 - level.albedo, within(level.runs[*i].products)));
+            match ends.map(|level| is_unfinished(&level.runs[*i])) {
+                [false, false] => panel.line(sheet, line, look.stroke()),
+                [true, true] => {}
+                _ => panel.line(sheet, line, Stroke::dashed(look.colour, 1.0, (2.5, 2.5))),
+            }
+        }
     }
     let n_levels = study.levels.len();
     for (i, look) in members {
@@ -153,48 +168,38 @@ fn is_unfinished(run: &SolverRun) -> bool {
 }
 
 /// What theory makes of a closed scene: the logarithm of the tolerance over 1 − albedo, and half of it over the root.
-fn draw_guides(sheet: &mut Sheet, panel: &Panel, study: &AlbedoStudy, is_annotated: bool) {
+fn draw_guides(sheet: &mut Sheet, panel: &Panel, study: &AlbedoStudy) {
     let (low, high) = panel.x.ends();
     let digits = (1.0 / study.tolerance).ln();
-    let guides = [(digits, 1.0, "∝ 1/(1 − a)", 0.55), (0.5 * (digits + 2.0_f64.ln()), 0.5, "∝ 1/√(1 − a)", 0.95)];
-    for (scale, power, name, named_at) in guides {
-        let at = |x: f64| scale * x.powf(-power);
+    for (scale, power) in [(digits, 1.0), (0.5 * (digits + 2.0_f64.ln()), 0.5)] {
         // From the darkest end to the budget, or the whitest end.
         let whitest = low.max((scale / study.budget).powf(1.0 / power));
-        if whitest.is_nan() || whitest >= high {
-            continue;
-        }
-        panel.line(sheet, [high, whitest].map(|x| (x, at(x))), Stroke::solid(GREY, 0.75));
-        let x = high.powf(1.0 - named_at) * whitest.powf(named_at);
-        if let (Some((x, y)), true) = (panel.place(x, at(x)), is_annotated) {
-            sheet.words((x - 7.0, y - 7.0), name, SMALL, GREY, Anchor::End);
+        if whitest < high {
+            panel.line(sheet, [high, whitest].map(|x| (x, scale * x.powf(-power))), GUIDE);
         }
     }
 }
 
-/// What all panels share, where there is a cell for it.
-fn draw_key(sheet: &mut Sheet, study: &AlbedoStudy, (x, y): Point) {
-    let line = |sheet: &mut Sheet, row: f64, rise: f64, stroke: Stroke| {
-        let y = y + 26.0 * row;
-        sheet.line(vec![(x, y + rise), (x + 26.0, y - rise)], stroke);
-    };
-    line(sheet, 0.0, 0.0, BUDGET);
-    line(sheet, 2.0, 7.0, Stroke::solid(GREY, 0.75));
-    line(sheet, 3.0, 3.5, Stroke::solid(GREY, 0.75));
-    look(0).unfinished(sheet, (x + 8.0, y + 26.0));
-    let words = [
-        budget(study),
+fn key_words(study: &AlbedoStudy) -> [String; 4] {
+    [
+        format!("budget, {} products", count(study.budget as u64)),
         "not there within it".to_string(),
-        "ln(1/ε) / (1 − a): closed scene, bounce by bounce".to_string(),
-        "½ ln(2/ε) / √(1 − a): its best polynomial".to_string(),
-    ];
-    for (row, text) in words.into_iter().enumerate() {
-        sheet.words((x + 36.0, y + 26.0 * row as f64), text, SMALL, INK, Anchor::Start);
-    }
+        "ln(1/ε) / (1 − a), a closed scene's bounces".to_string(),
+        "½ ln(2/ε) / √(1 − a), its best polynomial".to_string(),
+    ]
 }
 
-fn budget(study: &AlbedoStudy) -> String {
-    format!("budget, {} products", count(study.budget as u64))
+/// What all panels share.
+fn draw_key(sheet: &mut Sheet, words: &[String; 4], places: [Point; 4]) {
+    let [budget, unfinished, first, second] = places;
+    let mut line = |(x, y): Point, rise: f64, stroke| sheet.line(vec![(x, y + rise), (x + 26.0, y - rise)], stroke);
+    line(budget, 0.0, BUDGET);
+    line(first, 7.0, GUIDE);
+    line(second, 3.5, GUIDE);
+    look(0).unfinished(sheet, (unfinished.0 + 8.0, unfinished.1));
+    for (text, (x, y)) in words.iter().zip(places) {
+        sheet.words((x + 34.0, y), text, SMALL, INK, Anchor::Start);
+    }
 }
 
 /// 1 − albedo, whiter to the right, labelled where it was looked at, with the albedo where there is room for it.

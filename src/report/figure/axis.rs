@@ -1,6 +1,6 @@
 //! Where a number lies along an axis, and which numbers are written beside it.
 
-use crate::report::number::{count, power_of_ten, scientific, significant};
+use crate::report::number::{count, power_of_ten, scientific, significant, trimmed};
 
 /// Positive numbers below this are drawn at the foot of a logarithmic axis: far below what rounding leaves of 1.
 pub const SMALLEST_SHOWN: f64 = 1e-17;
@@ -45,7 +45,7 @@ impl Axis {
         let high = if high > 1e-300 { high.min(1e300) } else { 1.0 };
         let step = nice_step(high / 6.0);
         let labels = (0..=(high / step + 1e-9).floor() as u32).map(|k| f64::from(k) * step);
-        let labels = labels.map(|v| (v, if step >= 1.0 { count(v as u64) } else { significant(v, 2) })).collect();
+        let labels = labels.map(|v| (v, if step >= 1.0 { count(v as u64) } else { trimmed(v, 2) })).collect();
         Self { logarithmic: false, reversed: false, low: 0.0, high: 1.03 * high, labels, ticks: Vec::new() }
     }
 
@@ -53,7 +53,7 @@ impl Axis {
     pub fn linear_between(low: f64, high: f64) -> Self {
         let step = nice_step((high - low) / 6.0);
         let multiples = (low / step).ceil() as i64..=(high / step).floor() as i64;
-        let name = |v: f64| if v < 0.0 { format!("−{}", significant(-v, 2)) } else { significant(v, 2) };
+        let name = |v: f64| if v < 0.0 { format!("−{}", trimmed(-v, 2)) } else { trimmed(v, 2) };
         let labels = multiples.map(|k| k as f64 * step).map(|v| (v, name(v))).collect();
         Self { logarithmic: false, reversed: false, low, high, labels, ticks: Vec::new() }
     }
@@ -161,6 +161,15 @@ mod tests {
         assert!(axis.clips(0.0) && axis.clips(1e-18) && !axis.clips(1e-16));
         assert_eq!(axis.fraction(0.0), Some(0.0));
         assert_eq!(axis.fraction(f64::NAN), None);
+    }
+
+    #[test]
+    fn a_reversed_axis_begins_with_the_largest_and_one_may_end_where_it_is_told() {
+        let axis = Axis::log_decades([1e-3, 1.0]).reversed();
+        assert!((axis.fraction(1.0).unwrap(), axis.fraction(1e-3).unwrap()) == (0.0, 1.0));
+        assert_eq!(Axis::log_tight([2.0, 50.0]).up_to(1000.0).fraction(1000.0), Some(1.0));
+        // What would end before it begins stays as it is.
+        assert_eq!(Axis::log_decades([10.0, 100.0]).up_to(1.0).fraction(100.0), Some(1.0));
     }
 
     #[test]

@@ -54,6 +54,16 @@ impl Look {
         }
     }
 
+    /// The same in another colour.
+    pub fn in_colour(self, colour: Colour) -> Self {
+        Self { colour, ..self }
+    }
+
+    /// A marker in this shape, empty for what is below zero.
+    pub fn signed_marker(&self, sheet: &mut Sheet, at: Point, is_negative: bool) {
+        Self { open: is_negative, ..*self }.marker(sheet, at);
+    }
+
     /// An arrow head that points up from an empty marker: the value is larger, nobody knows by how much.
     pub fn unfinished(&self, sheet: &mut Sheet, (x, y): Point) {
         self.shape_at(sheet, (x, y), 4.0, self.colour);

@@ -149,6 +149,7 @@ pub fn cornell() -> StudyOutcome {
                 path_tracer,
                 standard_error: 0.0004 * matrix,
                 discretisation_error: 0.0021 * matrix,
+                is_comparable: s > 0,
             }
         })
     });
