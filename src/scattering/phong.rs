@@ -1,6 +1,7 @@
 //! The modified Phong lobe: the simplest glossy surface that is reciprocal and conserves energy.
 
 use super::Brdf;
+use super::deltas::mirrored;
 use crate::geometry::Vec3;
 use crate::sampling::warp;
 use crate::stats::special::{gamma_ratio_half, regularised_incomplete_beta};
@@ -107,9 +108,4 @@ impl Brdf for Phong {
     fn description(&self) -> String {
         format!("phong reflectance={:?} exponent={:?}", self.reflectance, self.exponent)
     }
-}
-
-/// The direction a mirror would send this one's light to; both point away from the surface.
-fn mirrored(direction: Vec3) -> Vec3 {
-    Vec3::new(-direction.x, -direction.y, direction.z)
 }
