@@ -60,7 +60,7 @@ fn a_budget_ends_a_method_and_an_albedo_out_of_range_the_study() {
 fn a_reading_is_the_same_by_light_and_by_importance() {
     for case in scenes::coarse() {
         let sensor = LinearSensor::of(&case.scene, &case.bundles, &case.system);
-        for method in solver::everyone(1e-13).iter().filter(|method| method.is_direct()) {
+        for method in solver::all(1e-13).iter().filter(|method| method.is_direct()) {
             let radiance = method.solve(case.system.equation(), &mut ()).unwrap().radiance;
             let duality = sensor.duality(&case.system, &radiance, &**method, &mut ()).unwrap();
             let name = (case.entry.name, method.name());

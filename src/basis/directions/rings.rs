@@ -39,7 +39,7 @@ impl Rings {
         while k > 1 {
             let target = (k as f64).sqrt() - PI.sqrt();
             let inner = if target > 0.0 { (target * target).round() as usize } else { 0 };
-            k = if (k - inner) % 2 == 0 { inner } else { (inner + 1).min(k - 1) };
+            k = if (k - inner).is_multiple_of(2) { inner } else { (inner + 1).min(k - 1) };
             inside.push(k);
         }
         if k == 1 {
