@@ -26,6 +26,7 @@ mod pairs;
 mod patches;
 mod refinement;
 mod report;
+mod rooms;
 mod sampling;
 mod scattering;
 mod scenes;
