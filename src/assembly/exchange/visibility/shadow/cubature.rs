@@ -172,7 +172,7 @@ impl Cell {
     }
 
     /// True where smaller cells promise more than longer rules.
-    fn wants_quarters(&self) -> bool {
+    fn wants_parts(&self) -> bool {
         match self.nature {
             Nature::Rough => true,
             Nature::Kinked(_) => self.rung >= 4,
@@ -290,7 +290,7 @@ pub fn integrate(cells: &mut Vec<Cell>, tolerance: f64, integrand: &mut Integran
             if cells[k].error < bar {
                 continue;
             }
-            if cells[k].wants_quarters() {
+            if cells[k].wants_parts() {
                 let cell = cells.swap_remove(k);
                 for corners in cell.parts() {
                     let mut part = Cell::new(corners, cell.term);
