@@ -30,6 +30,7 @@ mod patches;
 mod paths;
 mod refinement;
 mod report;
+mod rooms;
 mod sampling;
 mod scattering;
 mod scenes;

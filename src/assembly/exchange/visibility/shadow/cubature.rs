@@ -172,7 +172,7 @@ impl Cell {
     }
 
     /// True where smaller cells promise more than longer rules.
-    fn wants_quarters(&self) -> bool {
+    fn wants_parts(&self) -> bool {
         match self.nature {
             Nature::Rough => true,
             Nature::Kinked(_) => self.rung >= 4,
@@ -273,11 +273,16 @@ pub fn integrate(cells: &mut Vec<Cell>, tolerance: f64, integrand: &mut Integran
     for cell in cells.iter_mut() {
         cell.begin(integrand);
     }
+    let mut best = Sum { value: 0.0, error: f64::INFINITY };
     loop {
         let error: f64 = cells.iter().map(|cell| cell.error).sum();
         let worst = cells.iter().map(|cell| cell.error).fold(0.0, f64::max);
+        // New cells know less than what they replace: where points run out, go back to the best sum there was.
+        if error < best.error {
+            best = Sum { value: cells.iter().map(|cell| cell.value).sum(), error };
+        }
         if error <= tolerance || integrand.n_points > most_points {
-            return Sum { value: cells.iter().map(|cell| cell.value).sum(), error };
+            return best;
         }
         // Refine the worst, and where cells are many all that are nearly as bad.
         let bar = if cells.len() > 16 { 0.25 * worst } else { worst };
@@ -285,7 +290,7 @@ pub fn integrate(cells: &mut Vec<Cell>, tolerance: f64, integrand: &mut Integran
             if cells[k].error < bar {
                 continue;
             }
-            if cells[k].wants_quarters() {
+            if cells[k].wants_parts() {
                 let cell = cells.swap_remove(k);
                 for corners in cell.parts() {
                     let mut part = Cell::new(corners, cell.term);

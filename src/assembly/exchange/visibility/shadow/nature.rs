@@ -46,10 +46,11 @@ impl Axes {
         let lengths = values.map(Vec3::length);
         // About an apex, functions of direction are smooth in distance.
         let is_of_direction = self.has_apex && lengths[0] <= AT * (lengths[1] + lengths[2]);
-        for axis in usize::from(is_of_direction)..2 {
-            for [from, to] in LINES[axis] {
+        let axes = self.sums.iter_mut().zip(LINES).skip(usize::from(is_of_direction));
+        for (least, lines) in axes {
+            for [from, to] in lines {
                 let sum = (lengths[from] + lengths[to]) / (values[to] - values[from]).length();
-                self.sums[axis] = self.sums[axis].min(sum);
+                *least = least.min(sum);
             }
         }
     }
