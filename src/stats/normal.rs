@@ -4,7 +4,10 @@ use super::sidak_level;
 use super::special::complementary_error_function;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// (value − reference) / √variance; ±∞ where the variance is zero and they differ, 0 where they are equal.
+/// (value − reference) / √variance, normal where the value is and its variance is known. For a mean of n numbers of skewness γ with
+/// their own variance, |z| beyond a critical z is more frequent than it should be by about exp(z⁴/4n) · (1 + (γ z³)²/18n).
+///
+/// ±∞ where the variance is zero and they differ, 0 where they are equal.
 pub fn z_score(value: f64, reference: f64, variance: f64) -> f64 {
     if value == reference { 0.0 } else { (value - reference) / variance.sqrt() }
 }
