@@ -12,7 +12,7 @@ mod sobol;
 mod stream;
 pub mod warp;
 
-pub use alias::{AliasError, AliasRows, AliasTable, ROW_SUM_TOLERANCE};
+pub use alias::{AliasError, AliasRows, AliasTable, Draw, ROW_SUM_TOLERANCE};
 pub use cumulative::CumulativeRows;
 pub use directions::N_SOBOL_DIMENSIONS;
 pub use kronecker::{Kronecker, mix};

@@ -4,12 +4,12 @@ use etendue::assembly::{Exchange, System, assemble};
 use etendue::basis::{Bundles, Resolution};
 use etendue::compare::{compare_blocks, relative_max};
 use etendue::estimator::{
-    Bounces, Estimate, Estimator, EstimatorError, GuidedWalk, MatrixWalk, OracleError, Order, Prediction, Scoring,
-    Sequential, SequentialStop, Truth, estimate,
+    Bounces, Estimate, Estimator, EstimatorError, GuidedWalk, MatrixWalk, Multilevel, NestingError, OracleError, Order,
+    Prediction, Score, Scoring, Sequential, SequentialStop, Truth, estimate,
 };
 use etendue::gallery;
-use etendue::linalg::{Block, Equation};
-use etendue::sampling::Stream;
+use etendue::linalg::{Block, Equation, LinearOperator};
+use etendue::sampling::{AliasRows, AliasTable, Stream};
 use etendue::scene::Scene;
 use etendue::solver::{Gth, Lu, SolveError, Solver};
 use etendue::stats::{critical_z, fit_line, fit_power_law};
@@ -50,7 +50,7 @@ fn exact_bounces(system: &System, bounces: Bounces) -> Block {
     let mut powers = vec![system.emission().clone()];
     for k in 0..last {
         let mut next = Block::zeros(n, n_bands);
-        etendue::linalg::LinearOperator::apply(system.transport(), &powers[k], &mut next);
+        system.transport().apply(&powers[k], &mut next);
         powers.push(next);
     }
     match bounces {
@@ -131,7 +131,7 @@ fn every_scoring_shoots() {
         let system = system(&scene, patch_size);
         let (exact, walk) = (exact(&system), MatrixWalk::collision(&system).unwrap());
         for scoring in Scoring::ALL {
-            let drawn = estimate(&walk.shooting(scoring).unwrap(), 4_000_000, SEED);
+            let drawn = estimate(&walk.shooting(scoring).unwrap(), 1_500_000, SEED);
             assert!(!drawn.independent_bundles);
             assert_agrees_and_has_power(scene.name(), &exact, &drawn);
         }
@@ -152,7 +152,7 @@ fn bounces_are_told_apart() {
             let walk = walk.with_scoring(scoring).with_bounces(bounces);
             assert_agrees("a corner box", &measured, &estimate(&walk.measuring(&wanted).unwrap(), 400_000, SEED));
             let shooting = walk.shooting(scoring).unwrap().with_bounces(bounces);
-            let drawn = estimate(&shooting, 2_000_000, SEED);
+            let drawn = estimate(&shooting, 500_000, SEED);
             if bounces == Bounces::UpTo(0) {
                 assert_eq!(drawn.mean, exact);
             } else {
@@ -177,7 +177,7 @@ fn by_elimination(equation: Equation<'_>) -> Result<Block, SolveError> {
 
 /// Walks a start for the tests of variances: small by default, a million under ETENDUE_LARGE=1.
 fn n_large() -> u64 {
-    if std::env::var_os("ETENDUE_LARGE").is_some() { 1_000_000 } else { 50_000 }
+    if std::env::var_os("ETENDUE_LARGE").is_some() { 1_000_000 } else { 20_000 }
 }
 
 /// How far a measured variance is from the predicted one, over all entries of a column together: Σ (s²/V − 1) over its standard error. The
@@ -207,6 +207,17 @@ fn assert_predicted(name: &str, exact: &Block, prediction: &Prediction, drawn: &
     let verdict = compare_blocks(exact, &drawn.mean, &variance_of_mean, ALPHA);
     assert!(verdict.agrees, "{} in {name}: {verdict:?}", drawn.estimator);
     let z = variance_z(prediction, drawn);
+    if drawn.n_samples >= 1_000_000 {
+        let measured: f64 = drawn.variance_of_mean.values().iter().sum();
+        let predicted: f64 =
+            prediction.standard_error(drawn.n_samples).values().iter().map(|error| error * error).sum();
+        let ratio = (measured / predicted).sqrt();
+        assert!(
+            (ratio - 1.0).abs() < 0.01,
+            "{} in {name}: standard errors are {ratio} of the predicted ones",
+            drawn.estimator
+        );
+    }
     assert!(
         z.abs() < critical_z(ALPHA, n_families),
         "{} in {name}: the variance is off by {z} standard errors",
@@ -283,11 +294,11 @@ fn variances_of_shooting_walks_are_predicted() {
         for scoring in Scoring::ALL {
             let shooting = walk.shooting(scoring).unwrap();
             let prediction = shooting.predict(Order::Fourth, by_elimination).unwrap();
-            assert_each_predicted(scene.name(), &exact, &prediction, &estimate(&shooting, 40 * n_large(), SEED));
+            assert_each_predicted(scene.name(), &exact, &prediction, &estimate(&shooting, 50 * n_large(), SEED));
             let shooting = shooting.with_bounces(Bounces::Each(8));
             let prediction = shooting.predict(Order::Fourth, by_elimination).unwrap();
             let exact = exact_bounces(&system, Bounces::Each(8));
-            assert_each_predicted(scene.name(), &exact, &prediction, &estimate(&shooting, 40 * n_large(), SEED));
+            assert_each_predicted(scene.name(), &exact, &prediction, &estimate(&shooting, 50 * n_large(), SEED));
             let partial = shooting.with_bounces(Bounces::UpTo(2)).predict(Order::Variance, by_elimination);
             assert_eq!(partial, Err(OracleError::PartialSum { last: 2 }));
         }
@@ -490,6 +501,279 @@ fn scrambled_points_converge_faster() {
     // −½ for independent walks; a standard deviation from 200 replicates is good to 5 %, the slope to 0.02.
     let line = fit_power_law(&sizes.map(|n| n as f64), &errors).unwrap();
     assert!(line.slope < -0.6, "{line:?}: {errors:?}");
+}
+
+// ---------------------------------------------------------------------------------------------------------------------------------
+// Multilevel
+
+#[test]
+fn levels_add_up_to_the_finest() {
+    let furnace = gallery::furnace_cube(&[0.3, 0.6, 0.9], &[1.0, 0.5, 0.2]).unwrap();
+    for scene in [furnace, gallery::parallel_plates()] {
+        let sizes = [0.5, 0.25, 0.125];
+        let bundles = sizes.map(|patch_size| Bundles::new(&scene, Resolution { patch_size, n_directions: 1 }).unwrap());
+        let systems = [0, 1, 2].map(|k| assemble(&scene, &bundles[k], Exchange::default()).unwrap());
+        let pairs: Vec<_> = bundles.iter().zip(&systems).collect();
+        let levels = Multilevel::new(&pairs).unwrap();
+        let (name, exact) = (scene.name(), exact(&systems[2]));
+        assert_eq!((levels.n_levels(), levels.n_bundles()), (3, exact.n_rows()));
+
+        // Without bias, with error bars that hold, whatever the numbers of samples.
+        let drawn = levels.estimate_with(&[20_000, 4_000, 4_000], SEED);
+        let verdict = compare_blocks(&exact, &drawn.mean, &drawn.variance_of_mean, ALPHA);
+        assert!(verdict.agrees, "{name}: {verdict:?}");
+        let mut more = exact.clone();
+        more.add_scaled(0.1, &exact);
+        assert!(!compare_blocks(&more, &drawn.mean, &drawn.variance_of_mean, ALPHA).agrees);
+
+        // Differences vary the less the finer the levels, ...
+        let variances: Vec<f64> = drawn.levels.iter().map(|level| level.variance).collect();
+        assert!(variances[2] < 0.7 * variances[1] && variances[1] < 0.7 * variances[0], "{name}: {variances:?}");
+
+        // ... so that the error asked for is met with fewer steps than walks from every fine bundle would take.
+        let error = 0.01 * exact.max_abs();
+        let drawn = levels.estimate(error, 200, SEED);
+        let total: f64 = systems[2].etendue().iter().sum();
+        let mean_variance = |block: &Block| {
+            let of =
+                |column: &[f64]| column.iter().zip(systems[2].etendue()).map(|(v, mu)| v * mu / total).sum::<f64>();
+            block.columns().map(of).fold(0.0, f64::max)
+        };
+        let reached = mean_variance(&drawn.variance_of_mean).sqrt();
+        assert!((reached / error - 1.0).abs() < 0.2, "{name}: {reached} of {error}");
+        let alone = MatrixWalk::collision(&systems[2]).unwrap();
+        let predicted = alone.predict(Order::Variance, &exact, by_elimination).unwrap();
+        let n_walks = mean_variance(&predicted.variance) / (error * error);
+        let steps_a_walk = estimate(&alone, 100, SEED).n_steps as f64 / 100.0;
+        let n_steps: u64 = drawn.levels.iter().map(|level| level.n_steps).sum();
+        let by_itself = n_walks * steps_a_walk;
+        assert!((n_steps as f64) < 0.7 * by_itself, "{name}: {n_steps} against {by_itself}: {:?}", drawn.levels);
+    }
+}
+
+#[test]
+fn levels_that_are_no_refinements_are_refused() {
+    let scene = gallery::corner_box();
+    let bundles =
+        [0.5, 0.3].map(|patch_size| Bundles::new(&scene, Resolution { patch_size, n_directions: 1 }).unwrap());
+    let systems = [0, 1].map(|k| assemble(&scene, &bundles[k], Exchange::default()).unwrap());
+    let refused = Multilevel::new(&[(&bundles[0], &systems[0]), (&bundles[1], &systems[1])]).unwrap_err();
+    assert!(
+        matches!(refused, EstimatorError::Nesting { level: 1, source: NestingError::Straddles { .. } }),
+        "{refused:?}"
+    );
+    assert_eq!(Multilevel::new(&[]).unwrap_err(), EstimatorError::NoLevels);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------------------
+// Planted errors
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Mistake {
+    None,
+    /// Survivors are not weighed by a / p.
+    RouletteUnweighed,
+    /// Every score is 1 % too high.
+    ScoreOff,
+}
+
+/// The mean radiance of everything by a collision walk of its own, with or without a mistake in it.
+struct Planted<'a> {
+    system: &'a System,
+    starts: AliasTable,
+    steps: AliasRows,
+    mistake: Mistake,
+}
+
+impl Planted<'_> {
+    fn albedo(&self, bundle: usize, band: usize) -> f64 {
+        self.system.transport().scattering().values().get(bundle, band)
+    }
+}
+
+impl Estimator for Planted<'_> {
+    fn name(&self) -> &'static str {
+        "planted"
+    }
+
+    fn truth(&self) -> Truth {
+        Truth::Discrete
+    }
+
+    fn n_bundles(&self) -> usize {
+        1
+    }
+
+    fn n_columns(&self) -> usize {
+        self.system.n_bands()
+    }
+
+    fn sample(&self, start: usize, stream: &mut Stream, score: &mut Score) {
+        let mut bundle = self.starts.sample(stream.uniform());
+        let n_bands = self.system.n_bands();
+        let mut weights = vec![if self.mistake == Mistake::ScoreOff { 1.01 } else { 1.0 }; n_bands];
+        loop {
+            (0..n_bands)
+                .for_each(|band| score.add(start, band, weights[band] * self.system.emission().get(bundle, band)));
+            let survival = (0..n_bands).map(|band| self.albedo(bundle, band)).fold(0.0, f64::max);
+            if stream.uniform() >= survival {
+                return;
+            }
+            if self.mistake != Mistake::RouletteUnweighed {
+                (0..n_bands).for_each(|band| weights[band] *= self.albedo(bundle, band) / survival);
+            }
+            let Some(next) = self.steps.sample(bundle, stream.uniform()) else { return };
+            bundle = next;
+        }
+    }
+}
+
+/// Each mistake is caught within the number of samples that the prediction names beforehand: enough for the bias it makes to stand nine
+/// standard errors out, where five are too many.
+#[test]
+fn planted_errors_are_caught_within_the_predicted_budget() {
+    let system = system(&gallery::corner_box(), 1.0);
+    let (n, n_bands) = (system.n_bundles(), system.n_bands());
+    let exact = exact(&system);
+    let wanted = &measurements(&system)[..1];
+    let walk = MatrixWalk::collision(&system).unwrap().measuring(wanted).unwrap();
+    let prediction = walk.predict(Order::Variance, &exact, by_elimination).unwrap();
+    let right = measured(&system, wanted, &exact);
+    for mistake in [Mistake::RouletteUnweighed, Mistake::ScoreOff] {
+        let planted = |mistake| Planted {
+            system: &system,
+            starts: AliasTable::new(system.etendue()).unwrap(),
+            steps: AliasRows::new(n, n, |i, row| system.transport().propagation().row(0, i, row)).unwrap(),
+            mistake,
+        };
+        // What the mistake amounts to.
+        let wrong = planted(mistake);
+        let albedo = |i: usize, band: usize| match mistake {
+            Mistake::RouletteUnweighed => (0..n_bands).map(|band| wrong.albedo(i, band)).fold(0.0, f64::max),
+            _ => wrong.albedo(i, band),
+        };
+        let mut biased = self::exact(&system.with_albedo(Block::from_fn(n, n_bands, albedo)));
+        let factor = if mistake == Mistake::ScoreOff { 1.01 } else { 1.0 };
+        biased.values_mut().iter_mut().for_each(|v| *v *= factor);
+        let bias = measured(&system, wanted, &biased);
+
+        // The budget that shows it in the band where it shows most.
+        let samples = |band: usize| {
+            let off = (bias.get(0, band) - right.get(0, band)).abs() / (critical_z(ALPHA, n_bands) + 4.0);
+            prediction.variance.get(0, band) / (off * off)
+        };
+        let n_samples = (0..n_bands).map(samples).fold(f64::INFINITY, f64::min).ceil() as u64;
+        let judge = |mistake| {
+            let drawn = estimate(&planted(mistake), n_samples, SEED);
+            compare_blocks(&right, &drawn.mean, &drawn.variance_of_mean, ALPHA)
+        };
+        let verdict = judge(mistake);
+        assert!(!verdict.agrees, "{mistake:?} went unnoticed in {n_samples} samples: {verdict:?}");
+        let verdict = judge(Mistake::None);
+        assert!(verdict.agrees, "no mistake, {n_samples} samples: {verdict:?}");
+    }
+}
+
+/// A third of all bundles reflects a thousandth more than it should: walks guided by the right solution vary so little that few of them tell.
+#[test]
+fn an_albedo_that_is_slightly_off_is_caught_by_guided_walks() {
+    let system = system(&gallery::corner_box(), 1.0);
+    let (n, n_bands) = (system.n_bundles(), system.n_bands());
+    let exact = exact(&system);
+    let wanted = &measurements(&system)[..1];
+    let right = measured(&system, wanted, &exact);
+    let albedo = system.transport().scattering().values();
+    let off = |i: usize, band: usize| if 3 * i < n { 1.001 * albedo.get(i, band) } else { albedo.get(i, band) };
+    let mistaken = system.with_albedo(Block::from_fn(n, n_bands, off));
+    let walk = GuidedWalk::gathering(&mistaken, &exact).unwrap().measuring(wanted).unwrap();
+    let biased = self::exact(&mistaken);
+    let prediction = walk.predict(Order::Variance, &biased, by_factors).unwrap();
+    let bias = measured(&system, wanted, &biased);
+    let error = (0..n_bands).map(|band| (bias.get(0, band) - right.get(0, band)).abs()).fold(0.0, f64::max);
+    let n_samples = prediction.samples_for(error / (critical_z(ALPHA, n_bands) + 4.0)).max(1_000);
+    assert!(n_samples < 20_000, "{n_samples} samples");
+    let drawn = estimate(&walk, n_samples, SEED);
+    let verdict = compare_blocks(&right, &drawn.mean, &drawn.variance_of_mean, ALPHA);
+    assert!(!verdict.agrees, "{n_samples} samples: {verdict:?}");
+    let verdict = compare_blocks(&bias, &drawn.mean, &drawn.variance_of_mean, ALPHA);
+    assert!(verdict.agrees, "{n_samples} samples: {verdict:?}");
+}
+
+// ---------------------------------------------------------------------------------------------------------------------------------
+// Threads
+
+#[test]
+fn threads_change_no_bit_of_any_walk() {
+    let system = system(&gallery::corner_box(), 0.5);
+    let exact = exact(&system);
+    let walk = MatrixWalk::collision(&system).unwrap();
+    let wanted = measurements(&system);
+    let all: [(Box<dyn Estimator>, u64); 6] = [
+        (Box::new(walk.measuring(&wanted).unwrap()), 5_000),
+        (Box::new(walk.shooting(Scoring::Survival).unwrap()), 10_000),
+        (Box::new(walk.stochastic_jacobi(10_000).unwrap()), 50),
+        (Box::new(GuidedWalk::gathering(&system, &rough(&exact)).unwrap()), 1_500),
+        (Box::new(walk.quasi(1_000)), 5),
+        (Box::new(walk.measuring(&wanted).unwrap().quasi(20_000)), 20),
+    ];
+    let on = |n_threads: usize, estimator: &dyn Estimator, n_samples: u64| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().unwrap();
+        pool.install(|| estimate(estimator, n_samples, SEED))
+    };
+    for (estimator, n_samples) in &all {
+        let alone = on(1, estimator.as_ref(), *n_samples);
+        assert!(alone.n_steps > 0, "{} counts no steps", estimator.name());
+        assert_eq!(alone, on(3, estimator.as_ref(), *n_samples), "{}", estimator.name());
+    }
+}
+
+/// Particles move many abreast; one after another they draw the same samples.
+#[test]
+fn particles_abreast_are_the_same_particles() {
+    let system = system(&gallery::corner_box(), 0.5);
+    for bounces in [Bounces::All, Bounces::Each(3), Bounces::UpTo(1), Bounces::UpTo(0)] {
+        let shooting =
+            MatrixWalk::collision(&system).unwrap().shooting(Scoring::Absorption).unwrap().with_bounces(bounces);
+        let drawn = estimate(&shooting, 3_000, SEED);
+        let mut sum = Block::zeros(drawn.mean.n_rows(), drawn.mean.n_columns());
+        let one_by_one = OneByOne(&shooting);
+        sum.copy_from(&estimate(&one_by_one, 3_000, SEED).mean);
+        sum.add_scaled(1.0, shooting.known().unwrap());
+        assert!(relative_max(&sum, &drawn.mean) < SOLVE_TOLERANCE, "{bounces:?}");
+    }
+}
+
+/// Another estimator's samples, drawn singly, without what is known.
+struct OneByOne<'a>(&'a dyn Estimator);
+
+impl Estimator for OneByOne<'_> {
+    fn name(&self) -> &'static str {
+        self.0.name()
+    }
+
+    fn truth(&self) -> Truth {
+        self.0.truth()
+    }
+
+    fn n_bundles(&self) -> usize {
+        self.0.n_bundles()
+    }
+
+    fn n_columns(&self) -> usize {
+        self.0.n_columns()
+    }
+
+    fn n_starts(&self) -> usize {
+        self.0.n_starts()
+    }
+
+    fn reach(&self, start: usize) -> std::ops::Range<usize> {
+        self.0.reach(start)
+    }
+
+    fn sample(&self, start: usize, stream: &mut Stream, score: &mut Score) {
+        self.0.sample(start, stream, score);
+    }
 }
 
 // ---------------------------------------------------------------------------------------------------------------------------------

@@ -24,6 +24,9 @@ use std::sync::Arc;
 /// Weight below which walks are absorbed, and not before.
 const LEAST_WEIGHT: f64 = 1.0 / 64.0;
 
+/// Walks that one thread takes, in whole replicates.
+const WALKS_A_TASK: u64 = 1 << 16;
+
 /// Replicates of so many walks on one scrambled sequence. Scored: radiance of bundles, or measurements.
 #[derive(Clone, Debug)]
 pub struct QuasiWalk {
@@ -142,6 +145,10 @@ impl Estimator for QuasiWalk {
 
     fn n_columns(&self) -> usize {
         self.columns.count()
+    }
+
+    fn samples_a_task(&self) -> u64 {
+        WALKS_A_TASK / self.n_points.max(1)
     }
 
     fn sample(&self, start: usize, stream: &mut Stream, score: &mut Score) {
