@@ -48,7 +48,16 @@ struct Sight {
 impl<'t, 'a> Wave<'t, 'a> {
     pub fn new(tracer: &'t PathTracer<'a>, columns: Columns) -> Self {
         let (paths, sights) = (Vec::new(), Vec::new());
-        Self { tracer, columns, paths, throughput: Vec::new(), totals: Vec::new(), sights, light: Vec::new(), n_rays: 0 }
+        Self {
+            tracer,
+            columns,
+            paths,
+            throughput: Vec::new(),
+            totals: Vec::new(),
+            sights,
+            light: Vec::new(),
+            n_rays: 0,
+        }
     }
 
     /// Sends out a path with each of these streams, and follows them all to their ends. Returns what each has found, one number a column.
@@ -172,7 +181,9 @@ impl<'t, 'a> Wave<'t, 'a> {
         let (stage, totals, throughput) = (&tracer.stage, &mut self.totals, &self.throughput);
         self.n_rays += self.paths.len() as u64;
         self.paths.retain_mut(|path| {
-            let Some(arrival) = stage.follow(path.vertex.facet, path.vertex.position, path.direction) else { return false };
+            let Some(arrival) = stage.follow(path.vertex.facet, path.vertex.position, path.direction) else {
+                return false;
+            };
             let density = stage.emitters.density(arrival.facet);
             if density > 0.0 && arrival.side == Side::Front && tracer.sampling != Sampling::Emitters {
                 let weight = weight_of_ray(tracer.sampling, path.density, density, &arrival);
