@@ -1,6 +1,6 @@
 //! Why an equation or a scene cannot be sampled.
 
-use super::Kernel;
+use super::{Kernel, NestingError};
 use crate::sampling::AliasError;
 use thiserror::Error;
 
@@ -17,6 +17,14 @@ pub enum EstimatorError {
     NotReciprocal,
     #[error("light cannot be shot: no emission to draw from: {0}")]
     Emission(#[source] AliasError),
+    #[error("bundle {bundle}, band {band}: the guide or its source is {value:e}, must be finite and not negative")]
+    Guide { bundle: usize, band: usize, value: f64 },
+    #[error("bundle {bundle}, band {band}: the guide is zero where there is something to find")]
+    GuideMisses { bundle: usize, band: usize },
+    #[error("there is no level to walk on")]
+    NoLevels,
+    #[error("level {level} is no refinement of the one before: {source}")]
+    Nesting { level: usize, source: NestingError },
     #[error("a run needs at least one particle")]
     NoParticles,
     #[error("emitters cannot be chosen by their power: {0}")]

@@ -19,7 +19,11 @@ pub use estimate::{Estimate, MergeError, WeightedMean};
 pub use paths::{Bidirectional, Heuristic, Kernel, LightTracer, PathTracer, PhotonDensity, Roulette, Sampling};
 pub use run::{estimate, estimate_range, estimate_watched};
 pub use score::Score;
-pub use walks::{MatrixWalk, MeasuringWalk, Scoring, ShootingWalk, StochasticJacobi};
+pub use walks::{
+    GuidedWalk, LevelReport, MatrixWalk, MeasuringWalk, Multilevel, MultilevelEstimate, NestingError, OracleError,
+    Order, Prediction, QuasiWalk, Scoring, Sequential, SequentialEstimate, SequentialStop, ShootingWalk, Stage,
+    StochasticJacobi,
+};
 
 use crate::linalg::Block;
 use crate::sampling::{Stream, Streams};
@@ -71,6 +75,12 @@ pub trait Estimator: Sync {
     /// The bundles that samples from this start may score.
     fn reach(&self, start: usize) -> Range<usize> {
         start..start + 1
+    }
+
+    /// Consecutive samples of one start that one thread draws: many enough that setting up and merging moments of its reach is little against
+    /// drawing them, and no function of the threads.
+    fn samples_a_task(&self) -> u64 {
+        1024
     }
 
     /// What is added to the means without being sampled, n × columns, where something is: the samples' expectation is the rest.

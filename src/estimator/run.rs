@@ -11,9 +11,6 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Samples that one task draws from its start.
-const SAMPLES_A_TASK: u64 = 1024;
-
 /// Tasks drawn between two merges, or one a start where there are more starts: bounds the moments held at once.
 const TASKS_A_WAVE: usize = 32;
 
@@ -48,7 +45,8 @@ pub fn estimate_watched(
 
     // Draw some chunks of samples from all starts at a time.
     let n_samples = samples.end - samples.start;
-    let n_chunks = n_samples.div_ceil(SAMPLES_A_TASK);
+    let samples_a_task = estimator.samples_a_task().max(1);
+    let n_chunks = n_samples.div_ceil(samples_a_task);
     let n_tasks = n_chunks.saturating_mul(n_starts as u64);
     let chunks_a_wave = TASKS_A_WAVE.div_ceil(n_starts) as u64;
     let done = AtomicU64::new(0);
@@ -57,8 +55,8 @@ pub fn estimate_watched(
         let wave: Vec<(u64, Vec<Moments>)> = (0..n_chunks_here * n_starts)
             .into_par_iter()
             .map(|task| {
-                let begin = samples.start + (first_chunk + (task / n_starts) as u64) * SAMPLES_A_TASK;
-                let end = samples.end.min(begin.saturating_add(SAMPLES_A_TASK));
+                let begin = samples.start + (first_chunk + (task / n_starts) as u64) * samples_a_task;
+                let end = samples.end.min(begin.saturating_add(samples_a_task));
                 let start = task % n_starts;
                 let mut score = Score::new(estimator.reach(start), n_columns);
                 estimator.samples(start, begin..end, &streams, &mut score);

@@ -33,7 +33,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// Walks that one thread moves in turns: hides the time that memory takes to deliver a slot of a large matrix.
-const N_ABREAST: usize = 16;
+pub(super) const N_ABREAST: usize = 16;
 
 /// Walks on K whose mean is (I − K)⁻¹E, in every band.
 #[derive(Clone, Debug)]
@@ -126,8 +126,16 @@ impl MatrixWalk {
         Self { scoring, columns, chain, bundles, emission }
     }
 
-    pub(super) fn columns(&self) -> Columns {
-        self.columns
+    pub(super) fn bounces(&self) -> Bounces {
+        self.columns.bounces
+    }
+
+    /// α and β, n × bands each.
+    pub(super) fn scores(&self) -> [Block; 2] {
+        let (n, n_bands) = (self.chain.n_bundles(), self.chain.n_bands);
+        let at =
+            |first: usize| Block::from_fn(n, n_bands, |i, band| self.bundles[i * (1 + 3 * n_bands) + first + band]);
+        [at(1 + n_bands), at(1 + 2 * n_bands)]
     }
 
     pub(super) fn emission(&self) -> &Block {
@@ -181,7 +189,8 @@ impl MatrixWalk {
     /// Takes one walk to its end, scores it in `slot` and gives its stream back.
     pub(super) fn finish(&self, mut walk: Walk, slot: usize, score: &mut Score) -> Stream {
         while walk.is_inside && self.visit(&mut walk) {
-            self.step(&mut walk);
+            let next = self.chain.steps.sample(walk.bundle, walk.uniform);
+            walk.go(next);
         }
         walk.score(slot, score);
         walk.stream
@@ -190,6 +199,7 @@ impl MatrixWalk {
     /// Takes all these walks to their ends, many at a time, each a sample scored in `slot`.
     pub(super) fn abreast(&self, mut waiting: impl Iterator<Item = Walk>, slot: usize, score: &mut Score) {
         let mut walks: Vec<Walk> = waiting.by_ref().take(N_ABREAST).collect();
+        let mut draws = Vec::with_capacity(N_ABREAST);
         while !walks.is_empty() {
             // Score every walk, and put a new one in the place of each that ends.
             let mut k = 0;
@@ -206,8 +216,10 @@ impl MatrixWalk {
                 }
             }
 
-            // Move them all: nothing else here, so that memory delivers many slots at a time.
-            walks.iter_mut().for_each(|walk| self.step(walk));
+            // Move them all: first nothing but reads, so that memory delivers many slots at a time.
+            draws.clear();
+            draws.extend(walks.iter().map(|walk| self.chain.steps.fetch(walk.bundle, walk.uniform)));
+            walks.iter_mut().zip(&draws).for_each(|(walk, draw)| walk.go(draw.column()));
         }
     }
 
@@ -233,16 +245,6 @@ impl MatrixWalk {
         walk.weights.iter_mut().zip(gain).for_each(|(weight, gain)| *weight *= gain);
         true
     }
-
-    /// Moves a walk by G, maybe out of the scene.
-    #[inline]
-    fn step(&self, walk: &mut Walk) {
-        walk.n_steps += 1;
-        match self.chain.steps.sample(walk.bundle, walk.uniform) {
-            Some(next) => walk.bundle = next,
-            None => walk.is_inside = false,
-        }
-    }
 }
 
 impl Walk {
@@ -251,6 +253,16 @@ impl Walk {
         for (band, w) in weights.enumerate() {
             self.weights[band] = w;
             self.totals[band] *= w;
+        }
+    }
+
+    /// Moves to the next bundle, or out of the scene.
+    #[inline]
+    fn go(&mut self, next: Option<usize>) {
+        self.n_steps += 1;
+        match next {
+            Some(next) => self.bundle = next,
+            None => self.is_inside = false,
         }
     }
 

@@ -23,6 +23,9 @@ use crate::sampling::Stream;
 use std::ops::Range;
 use std::sync::Arc;
 
+/// First particles that one thread shoots, in whole runs.
+const PARTICLES_A_TASK: u64 = 1 << 16;
+
 /// Runs of stochastic Jacobi, whose mean is (I − K)⁻¹E in every band. One start, which scores every bundle.
 #[derive(Clone, Debug)]
 pub struct StochasticJacobi {
@@ -31,6 +34,7 @@ pub struct StochasticJacobi {
     /// Power of a particle in its brightest band, W.
     quantum: f64,
     known: Block,
+    samples_a_task: u64,
 }
 
 impl MatrixWalk {
@@ -50,7 +54,13 @@ impl MatrixWalk {
         let power: f64 = chain.etendue.iter().enumerate().map(|(i, mu)| mu * brightest(i)).sum();
         let columns = Columns { n_bands: chain.n_bands, bounces: Bounces::All };
         let known = chain.emission.clone();
-        Ok(StochasticJacobi { columns, chain, quantum: power / n_particles as f64, known })
+        Ok(StochasticJacobi {
+            columns,
+            chain,
+            quantum: power / n_particles as f64,
+            known,
+            samples_a_task: PARTICLES_A_TASK / n_particles,
+        })
     }
 }
 
@@ -90,6 +100,10 @@ impl Estimator for StochasticJacobi {
 
     fn known(&self) -> Option<&Block> {
         Some(&self.known)
+    }
+
+    fn samples_a_task(&self) -> u64 {
+        self.samples_a_task
     }
 
     fn sample(&self, _: usize, stream: &mut Stream, score: &mut Score) {

@@ -74,6 +74,11 @@ impl Starts {
         self.shares.row(bundle).map(|share| self.total * share)
     }
 
+    /// w of one band, n.
+    pub fn weights_of(&self, band: usize) -> Vec<f64> {
+        self.shares.column(band).iter().map(|share| self.total * share).collect()
+    }
+
     /// q, n.
     pub fn probabilities(&self) -> Vec<f64> {
         self.table.probabilities()

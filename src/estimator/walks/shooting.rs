@@ -19,11 +19,12 @@ use super::super::bands::Bands;
 use super::super::bounces::Columns;
 use super::super::{Bounces, Estimator, EstimatorError, Score, Truth};
 use super::chain::Chain;
-use super::gathering::add;
+use super::gathering::{N_ABREAST, add};
 use super::measuring::Starts;
+use super::oracle::Law;
 use super::{MatrixWalk, Scoring};
 use crate::linalg::Block;
-use crate::sampling::Stream;
+use crate::sampling::{Stream, Streams};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -36,7 +37,21 @@ pub struct ShootingWalk {
     pub(super) births: Arc<Starts>,
     /// n × (1 + 3 bands), row by row: p, then a / p, α / μ and β / μ of every band.
     bundles: Vec<f64>,
-    known: Block,
+    pub(super) known: Block,
+}
+
+/// A particle on its way.
+struct Particle {
+    bundle: usize,
+    is_alive: bool,
+    /// Steps taken.
+    n_steps: usize,
+    /// Chooses the next step.
+    uniform: f64,
+    power: Bands,
+    stream: Stream,
+    /// Where it arrived, whether it survived there, and with what power it came.
+    visits: Vec<(usize, bool, Bands)>,
 }
 
 impl MatrixWalk {
@@ -75,6 +90,18 @@ impl ShootingWalk {
     pub fn scoring(&self) -> Scoring {
         self.scoring
     }
+
+    pub(super) fn bounces(&self) -> Bounces {
+        self.columns.bounces
+    }
+
+    /// What a particle of unit power does where it has arrived.
+    pub(super) fn law(&self) -> Law<'_> {
+        let (n, n_bands) = (self.chain.n_bundles(), self.chain.n_bands);
+        let at =
+            |first: usize| Block::from_fn(n, n_bands, |i, band| self.bundles[i * (1 + 3 * n_bands) + first + band]);
+        Law::of_chain(&self.chain, [at(1 + n_bands), at(1 + 2 * n_bands)])
+    }
 }
 
 impl Estimator for ShootingWalk {
@@ -111,34 +138,94 @@ impl Estimator for ShootingWalk {
         Some(&self.known)
     }
 
-    fn sample(&self, _: usize, stream: &mut Stream, score: &mut Score) {
-        // Draw where it is born, with the power it carries.
-        let n_bands = self.chain.n_bands;
-        let mut bundle = self.births.draw(stream);
-        let mut power = Bands::all(0.0, n_bands);
-        power.iter_mut().zip(self.births.weights(bundle)).for_each(|(power, w)| *power = w);
-        let mut uniform = stream.uniform();
-        for bounce in 1.. {
-            // Go to the next bundle, maybe out of the scene.
-            let Some(here) = self.columns.of(bounce) else { return };
-            score.count_steps(1);
-            let Some(next) = self.chain.steps.sample(bundle, uniform) else { return };
-            bundle = next;
-            let row = &self.bundles[bundle * (1 + 3 * n_bands)..][..1 + 3 * n_bands];
-            let (survival, row) = (row[0], &row[1..]);
-            let (gain, row) = row.split_at(n_bands);
-            let (at_last, at_other) = row.split_at(n_bands);
+    fn samples_a_task(&self) -> u64 {
+        4 * self.n_bundles().max(256) as u64
+    }
 
-            // Absorb it with probability 1 − p; below p, the number over p is uniform again.
-            uniform = stream.uniform();
-            let totals = &mut score.totals(bundle)[here];
-            if uniform >= survival {
-                add(totals, &power, at_last);
-                return;
-            }
-            add(totals, &power, at_other);
-            uniform /= survival;
-            power.iter_mut().zip(gain).for_each(|(power, gain)| *power *= gain);
+    fn sample(&self, _: usize, stream: &mut Stream, score: &mut Score) {
+        let mut particle = self.birth(stream.clone());
+        while particle.is_alive {
+            let next = self.chain.steps.sample(particle.bundle, particle.uniform);
+            self.arrive(&mut particle, next);
         }
+        self.score(&particle, score);
+        *stream = particle.stream;
+    }
+
+    fn samples(&self, _: usize, numbers: Range<u64>, streams: &Streams, score: &mut Score) {
+        let mut waiting = numbers.map(|number| self.birth(streams.stream(0, number)));
+        let mut particles: Vec<Particle> = waiting.by_ref().take(N_ABREAST).collect();
+        let mut draws = Vec::with_capacity(N_ABREAST);
+        while !particles.is_empty() {
+            // Move them all: first nothing but reads, so that memory delivers many slots at a time.
+            draws.clear();
+            draws.extend(particles.iter().map(|particle| self.chain.steps.fetch(particle.bundle, particle.uniform)));
+            particles.iter_mut().zip(&draws).for_each(|(particle, draw)| self.arrive(particle, draw.column()));
+
+            // Score those that have ended, and put a new one in the place of each.
+            let mut k = 0;
+            while k < particles.len() {
+                if particles[k].is_alive {
+                    k += 1;
+                    continue;
+                }
+                self.score(&particles[k], score);
+                score.end_sample();
+                match waiting.next() {
+                    Some(particle) => particles[k] = particle,
+                    None => drop(particles.swap_remove(k)),
+                }
+            }
+        }
+    }
+}
+
+impl ShootingWalk {
+    /// A particle where it is born, with the power it carries.
+    fn birth(&self, mut stream: Stream) -> Particle {
+        let bundle = self.births.draw(&mut stream);
+        let mut power = Bands::all(0.0, self.chain.n_bands);
+        power.iter_mut().zip(self.births.weights(bundle)).for_each(|(power, w)| *power = w);
+        let uniform = stream.uniform();
+        let is_alive = !self.columns.ends_before(1);
+        Particle { bundle, is_alive, n_steps: 0, uniform, power, stream, visits: Vec::new() }
+    }
+
+    /// Lets a particle arrive on its next bundle, maybe out of the scene, and be absorbed or go on.
+    #[inline]
+    fn arrive(&self, particle: &mut Particle, next: Option<usize>) {
+        particle.n_steps += 1;
+        let Some(bundle) = next else {
+            particle.is_alive = false;
+            return;
+        };
+        let n_bands = self.chain.n_bands;
+        let (survival, gain) = self.row(bundle)[..1 + n_bands].split_at(1);
+
+        // Absorb it with probability 1 − p; below p, the number over p is uniform again.
+        let uniform = particle.stream.uniform();
+        let survives = uniform < survival[0];
+        particle.visits.push((bundle, survives, particle.power.clone()));
+        particle.bundle = bundle;
+        particle.is_alive = survives && !self.columns.ends_before(particle.n_steps + 1);
+        particle.uniform = uniform / survival[0];
+        particle.power.iter_mut().zip(gain).for_each(|(power, gain)| *power *= gain);
+    }
+
+    /// Adds what a particle has left on its way to the sample.
+    fn score(&self, particle: &Particle, score: &mut Score) {
+        let n_bands = self.chain.n_bands;
+        score.count_steps(particle.n_steps as u64);
+        for (bounce, (bundle, survives, power)) in (1..).zip(&particle.visits) {
+            let Some(here) = self.columns.of(bounce) else { return };
+            let first = 1 + if *survives { 2 * n_bands } else { n_bands };
+            add(&mut score.totals(*bundle)[here], power, &self.row(*bundle)[first..][..n_bands]);
+        }
+    }
+
+    #[inline]
+    fn row(&self, bundle: usize) -> &[f64] {
+        let width = 1 + 3 * self.chain.n_bands;
+        &self.bundles[bundle * width..][..width]
     }
 }
