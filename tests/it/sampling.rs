@@ -58,6 +58,34 @@ fn uniform_numbers_are_uniform_within_and_across_streams() {
     }
 }
 
+/// Three numbers of one block: each uniform to its last digits, and together.
+#[test]
+fn three_numbers_of_a_block_are_uniform_together() {
+    let n_cells = 12;
+    let streams = Streams::new(30, "blocks of three");
+    let (mut coarse, mut fine) = (vec![0; n_cells * n_cells * n_cells], vec![0; n_cells * n_cells * n_cells]);
+    let mut stream = streams.stream(0, 0);
+    for _ in 0..N_SAMPLES {
+        let numbers = stream.uniform3();
+        assert!(numbers.iter().all(|u| (0.0..1.0).contains(u)));
+        let cell = |numbers: [f64; 3]| numbers.iter().fold(0, |cell, u| cell * n_cells + (u * n_cells as f64) as usize);
+        coarse[cell(numbers)] += 1;
+        // The last 21 of 42 digits.
+        fine[cell(numbers.map(|u| (u * f64::from(1 << 21)).fract()))] += 1;
+    }
+    let expected = vec![N_SAMPLES as f64 / coarse.len() as f64; coarse.len()];
+    for counts in [coarse, fine] {
+        let p = chi_squared_test(&counts, &expected).unwrap().p_value;
+        assert!(p > sidak_level(SIGNIFICANCE, 2), "p = {p:e}");
+    }
+
+    // Half a block that is left over is dropped: the next numbers are those of the next block.
+    let (mut left_over, mut none) = (streams.stream(1, 1), streams.stream(1, 1));
+    left_over.uniform();
+    none.uniform2();
+    assert_eq!(left_over.uniform3(), none.uniform3());
+}
+
 #[test]
 fn neighbouring_streams_are_uncorrelated() {
     let moments = |first: fn(u64) -> (u32, u64), second: fn(u64) -> (u32, u64)| -> Moments {

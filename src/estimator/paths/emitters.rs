@@ -19,6 +19,8 @@ pub(super) struct Emitters<'a> {
 pub(super) struct Emitter<'a> {
     pub facet: usize,
     pub polygon: &'a Polygon,
+    /// Of the front.
+    pub normal: Vec3,
     /// W m⁻² sr⁻¹, one value a band.
     pub emission: &'a [f64],
     /// Density of [`Emitters::point`] by area, m⁻².
@@ -37,6 +39,7 @@ impl<'a> Emitters<'a> {
         let emitter = |facet: usize| Emitter {
             facet,
             polygon: scene.polygon(facet),
+            normal: scene.polygon(facet).normal(),
             emission: &scene.surface_of(facet).emission,
             density: density[facet],
         };
@@ -46,8 +49,9 @@ impl<'a> Emitters<'a> {
     /// An emitter and a point of it. Draws three numbers.
     #[inline]
     pub fn point(&self, stream: &mut Stream) -> (&Emitter<'a>, Vec3) {
-        let emitter = &self.emitters[self.choice.sample(stream.uniform())];
-        (emitter, emitter.polygon.sample(stream.uniform2()))
+        let [choice, u, v] = stream.uniform3();
+        let emitter = &self.emitters[self.choice.sample(choice)];
+        (emitter, emitter.polygon.sample([u, v]))
     }
 
     /// Density of [`Emitters::point`] by area, m⁻², at any point of a facet's front.

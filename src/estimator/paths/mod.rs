@@ -10,6 +10,7 @@ mod photon;
 mod reflection;
 mod roulette;
 mod stage;
+mod wave;
 mod white;
 
 pub use bidirectional::Bidirectional;

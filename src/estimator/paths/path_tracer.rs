@@ -19,14 +19,18 @@
 //! Cost: a closest-hit ray and a shadow ray a vertex. Visibility leaves out the plane that a ray starts on by identity; there is no epsilon.
 //! Source: Kajiya 1986; Veach 1997, §9.2 (heuristics), §10.4 (roulette).
 
-use super::super::bands::Bands;
 use super::super::bounces::Columns;
 use super::super::{Bounces, Estimator, EstimatorError, Score, Truth};
-use super::stage::{Arrival, Stage, Vertex};
+use super::stage::Stage;
+use super::wave::Wave;
 use super::{Heuristic, Roulette};
 use crate::basis::Bundles;
-use crate::sampling::Stream;
-use crate::scene::{Scene, Side};
+use crate::sampling::{Stream, Streams};
+use crate::scene::Scene;
+use std::ops::Range;
+
+/// Paths that one thread moves together: enough to hide what each waits for, few enough to stay in the nearest caches.
+const N_ABREAST: u64 = 128;
 
 /// How paths find emitters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -41,17 +45,10 @@ pub enum Sampling {
 
 /// Paths whose mean is the continuous radiance of every bundle.
 pub struct PathTracer<'a> {
-    stage: Stage<'a>,
-    sampling: Sampling,
-    roulette: Roulette,
+    pub(super) stage: Stage<'a>,
+    pub(super) sampling: Sampling,
+    pub(super) roulette: Roulette,
     columns: Columns,
-}
-
-/// A point on an emitter as a vertex sees it.
-struct Sight {
-    /// f E cosθ′ over the density, a band each.
-    light: Bands,
-    is_free: bool,
 }
 
 impl<'a> PathTracer<'a> {
@@ -83,115 +80,6 @@ impl<'a> PathTracer<'a> {
     pub fn with_bounces(self, bounces: Bounces) -> Self {
         Self { columns: Columns { bounces, ..self.columns }, ..self }
     }
-
-    /// Adds one path to the score. Returns how many rays it cast.
-    #[inline]
-    fn trace(&self, start: usize, stream: &mut Stream, score: &mut Score) -> u64 {
-        // Leave the bundle with what it emits.
-        let (stage, columns) = (&self.stage, self.columns);
-        let patch = stage.patches[start];
-        let Some(emitted) = columns.of(0) else { return 0 };
-        add(&mut score.totals(start)[emitted], stage.emission(patch.facet, patch.side), 1.0);
-        let Some(mut vertex) = stage.leave(patch, stream) else { return 0 };
-        let mut throughput = Bands::all(1.0, columns.n_bands);
-        let mut n_rays = 0;
-        for bounce in 1.. {
-            let Some(here) = columns.of(bounce) else { return n_rays };
-            let totals = &mut score.totals(start)[here];
-            if let Some(sight) = self.draw_emitter(&vertex, &throughput, stream) {
-                n_rays += 1;
-                if sight.is_free {
-                    add(totals, &sight.light, 1.0);
-                }
-            }
-            if self.sampling == Sampling::Emitters && columns.ends_before(bounce + 1) {
-                return n_rays;
-            }
-
-            // Draw a direction that light may come from, and let the path survive or not.
-            let Some(turn) = vertex.reflection.turn(vertex.given, stream.uniform2(), &mut throughput) else {
-                return n_rays;
-            };
-            let survival = self.roulette.survival(bounce, throughput.max());
-            if survival < 1.0 {
-                if stream.uniform() >= survival {
-                    return n_rays;
-                }
-                throughput.iter_mut().for_each(|throughput| *throughput /= survival);
-            }
-
-            // Go and see where it came from.
-            n_rays += 1;
-            let direction = vertex.frame.to_world(turn.direction);
-            let Some(arrival) = stage.follow(vertex.facet, vertex.position, direction) else { return n_rays };
-            let density = stage.emitters.density(arrival.facet);
-            if density > 0.0 && arrival.side == Side::Front && self.sampling != Sampling::Emitters {
-                let weight = self.weight_of_ray(turn.density, density, &arrival);
-                let emission = &stage.scene.surface_of(arrival.facet).emission;
-                for ((total, throughput), emission) in totals.iter_mut().zip(throughput.iter()).zip(emission) {
-                    *total += throughput * weight * emission;
-                }
-            }
-            let Some(next) = stage.vertex(&arrival) else { return n_rays };
-            vertex = next;
-        }
-        n_rays
-    }
-
-    /// What a point drawn on the emitters sends to the vertex and on along the path, weighed against finding it by a ray; `None` where the
-    /// two do not face each other, or emitters are not drawn.
-    #[inline]
-    fn draw_emitter(&self, vertex: &Vertex<'_>, throughput: &Bands, stream: &mut Stream) -> Option<Sight> {
-        if self.sampling == Sampling::Directions {
-            return None;
-        }
-        let stage = &self.stage;
-        let (emitter, point) = stage.emitters.point(stream);
-        if stage.tracer.coplanar(emitter.facet, vertex.facet) {
-            return None;
-        }
-        let offset = point - vertex.position;
-        let distance_squared = offset.length_squared();
-        let direction = offset / distance_squared.sqrt();
-        let incident = vertex.frame.to_local(direction);
-        let emitter_cosine = -direction.dot(emitter.polygon.normal());
-        if !(incident.z > 0.0 && emitter_cosine > 0.0) {
-            return None;
-        }
-
-        // f E cosθ′ / p, times the weight.
-        let by_point = emitter.density * distance_squared / emitter_cosine;
-        let weight = match self.sampling {
-            Sampling::Both(heuristic) => heuristic.weight(by_point, vertex.reflection.density(vertex.given, incident)),
-            _ => 1.0,
-        };
-        let mut light = throughput.clone();
-        light.iter_mut().zip(emitter.emission).for_each(|(light, emission)| *light *= emission);
-        vertex.reflection.scale(vertex.given, incident, incident.z / by_point * weight, &mut light);
-        if light.max() <= 0.0 {
-            return None;
-        }
-        let is_free = !stage.tracer.occluded(vertex.position, point, [vertex.facet, emitter.facet]);
-        Some(Sight { light, is_free })
-    }
-
-    /// The weight of an emitter that a ray of this density has found, against drawing that point.
-    #[inline]
-    fn weight_of_ray(&self, by_ray: f64, density: f64, arrival: &Arrival) -> f64 {
-        match self.sampling {
-            Sampling::Both(heuristic) => {
-                let by_point = density * arrival.distance * arrival.distance / arrival.given.z;
-                heuristic.weight(by_ray, by_point)
-            }
-            _ => 1.0,
-        }
-    }
-}
-
-/// totals ← totals + scale · values.
-#[inline]
-fn add(totals: &mut [f64], values: &[f64], scale: f64) {
-    totals.iter_mut().zip(values).for_each(|(total, value)| *total += scale * value);
 }
 
 impl Estimator for PathTracer<'_> {
@@ -217,7 +105,22 @@ impl Estimator for PathTracer<'_> {
     }
 
     fn sample(&self, start: usize, stream: &mut Stream, score: &mut Score) {
-        let n_rays = self.trace(start, stream, score);
-        score.count_steps(n_rays);
+        let mut wave = Wave::new(self, self.columns);
+        for found in wave.run(start, std::iter::once(stream.clone())) {
+            score.totals(start).iter_mut().zip(found).for_each(|(total, found)| *total += found);
+        }
+        score.count_steps(wave.n_rays);
+    }
+
+    fn samples(&self, start: usize, numbers: Range<u64>, streams: &Streams, score: &mut Score) {
+        let mut wave = Wave::new(self, self.columns);
+        for first in numbers.clone().step_by(N_ABREAST as usize) {
+            let abreast = first..numbers.end.min(first.saturating_add(N_ABREAST));
+            for found in wave.run(start, abreast.map(|number| streams.stream(start as u32, number))) {
+                score.totals(start).copy_from_slice(found);
+                score.end_sample();
+            }
+        }
+        score.count_steps(wave.n_rays);
     }
 }

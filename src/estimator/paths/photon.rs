@@ -39,14 +39,13 @@ pub(super) fn fly(
         hit(&vertex, bounce, &power);
 
         // Turn it, and let it survive or not.
-        let Some(turn) = vertex.reflection.turn(vertex.given, stream.uniform2(), &mut power) else { break };
+        let [u, v, fate] = stream.uniform3();
+        let Some(turn) = vertex.reflection.turn(vertex.given, [u, v], &mut power) else { break };
         let survival = roulette.survival(bounce, power.max() / sent);
-        if survival < 1.0 {
-            if stream.uniform() >= survival {
-                break;
-            }
-            power.iter_mut().for_each(|power| *power /= survival);
+        if fate >= survival {
+            break;
         }
+        power.iter_mut().for_each(|power| *power /= survival);
         (facet, position, direction) = (vertex.facet, vertex.position, vertex.frame.to_world(turn.direction));
     }
     n_rays

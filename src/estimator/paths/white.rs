@@ -28,7 +28,7 @@ pub(super) fn closed_part(stage: &Stage<'_>) -> Option<usize> {
 fn closed_part_in(stage: &Stage<'_>, band: usize) -> Option<usize> {
     // Number a facet's two sides, and find the white ones.
     let n_sides = 2 * stage.scene.facets().len();
-    let side_of = |k: usize| if k % 2 == 0 { Side::Front } else { Side::Back };
+    let side_of = |k: usize| if k.is_multiple_of(2) { Side::Front } else { Side::Back };
     let is_white: Vec<bool> = (0..n_sides).map(|k| is_white(stage, band, k / 2, side_of(k))).collect();
     let white: Vec<usize> = (0..n_sides).filter(|k| is_white[*k]).collect();
     let dark: Vec<usize> = (0..n_sides).filter(|k| !is_white[*k]).collect();

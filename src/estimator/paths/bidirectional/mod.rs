@@ -166,8 +166,8 @@ impl Estimator for Bidirectional<'_> {
         let (most_light, most_eye) = self.most_vertices();
         let stage = &self.stage;
         let walker = Walker { stage, roulette: self.roulette, n_bands: self.columns.n_bands };
-        let (eye, n_eye_rays) = walker.from_bundle(stage.patches[start], most_eye, stream);
-        let (light, n_light_rays) = walker.from_light(most_light, stream);
+        let (eye, n_eye_rays) = walker.of_bundle(stage.patches[start], most_eye, stream);
+        let (light, n_light_rays) = walker.of_light(most_light, stream);
         let mut n_rays = n_eye_rays + n_light_rays;
         for t in 1..=eye.len() {
             for s in 0..=light.len() {

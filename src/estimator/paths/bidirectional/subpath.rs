@@ -90,7 +90,7 @@ pub(super) struct Walker<'s, 'a> {
 
 impl<'s> Walker<'s, '_> {
     /// A path that starts in the étendue of a bundle, of at most so many vertices, and how many rays it took.
-    pub fn from_bundle(self, patch: &Patch, most: usize, stream: &mut Stream) -> (Vec<Node<'s>>, u64) {
+    pub fn of_bundle(self, patch: &Patch, most: usize, stream: &mut Stream) -> (Vec<Node<'s>>, u64) {
         let Some(vertex) = self.stage.leave(patch, stream).filter(|_| most > 0) else { return (Vec::new(), 0) };
         let mut path = vec![Node::reflecting(&vertex, Bands::all(1.0, self.n_bands), 1.0, 0.0)];
         let n_rays = self.extend(most, stream, &mut path);
@@ -98,7 +98,7 @@ impl<'s> Walker<'s, '_> {
     }
 
     /// A path that starts on an emitter, of at most so many vertices, and how many rays it took.
-    pub fn from_light(self, most: usize, stream: &mut Stream) -> (Vec<Node<'s>>, u64) {
+    pub fn of_light(self, most: usize, stream: &mut Stream) -> (Vec<Node<'s>>, u64) {
         if most == 0 {
             return (Vec::new(), 0);
         }
@@ -127,18 +127,19 @@ impl<'s> Walker<'s, '_> {
         while let Some(here) = path.last().filter(|_| path.len() < most) {
             // Draw a direction; what is reflected survives or not.
             let mut throughput = here.throughput.clone();
+            let [u, v, fate] = stream.uniform3();
             let turn = match here.turning {
                 Turning::Emission => {
-                    let direction = warp::cosine_hemisphere(stream.uniform2());
+                    let direction = warp::cosine_hemisphere([u, v]);
                     throughput.iter_mut().for_each(|carried| *carried *= PI);
                     sent *= PI;
                     Turn { direction: direction.into(), density: warp::cosine_hemisphere_pdf(direction) }
                 }
                 Turning::Reflection { reflection, given } => {
-                    let turn = reflection.turn(given, stream.uniform2(), &mut throughput);
+                    let turn = reflection.turn(given, [u, v], &mut throughput);
                     let survival = self.roulette.survival(path.len(), throughput.max() / sent);
-                    let Some(turn) = turn.filter(|_| survival >= 1.0 || stream.uniform() < survival) else { break };
-                    throughput.iter_mut().for_each(|carried| *carried /= survival.min(1.0));
+                    let Some(turn) = turn.filter(|_| fate < survival) else { break };
+                    throughput.iter_mut().for_each(|carried| *carried /= survival);
                     turn
                 }
             };
