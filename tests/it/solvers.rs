@@ -214,7 +214,7 @@ impl CoarseWork {
         for band in 0..n_bands {
             let root = |i: usize| (system.etendue()[i] / albedo.get(i, band)).sqrt();
             let is_strong = |i: usize, j: usize, k: f64| {
-                albedo.get(i, band) > 0.0 && albedo.get(j, band) > 0.0 && root(i) * k > 6.0 / n as f64 * root(j)
+                albedo.get(i, band) > 0.0 && albedo.get(j, band) > 0.0 && root(i) * k > 4.0 / n as f64 * root(j)
             };
             let mut n_strong = 0;
             for i in 0..n {
