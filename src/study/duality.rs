@@ -11,7 +11,7 @@ use super::sensitivity::{Quantity, Sensor, weights};
 use crate::assembly::{Gather, Measurement, System};
 use crate::basis::Bundles;
 use crate::linalg::{Block, LinearOperator, worst};
-use crate::scene::Scene;
+use crate::scene::{Scene, Surface};
 use crate::solver::{Observer, SolveError, Solver};
 use serde::Serialize;
 use std::time::Instant;
@@ -60,7 +60,7 @@ impl LinearSensor {
         if let Some(sensor) = Self::camera(scene, bundles, system) {
             return sensor;
         }
-        let is_dark = |surface: &crate::scene::Surface| surface.emission.iter().all(|e| *e == 0.0);
+        let is_dark = |surface: &Surface| surface.emission.iter().all(|e| *e == 0.0);
         match scene.surfaces().iter().position(is_dark) {
             Some(surface) => Self {
                 description: format!("mean irradiance of '{}'", scene.surfaces()[surface].name),

@@ -10,7 +10,7 @@
 use super::outcome::SolverRun;
 use crate::assembly::System;
 use crate::linalg::{Block, LinearOperator, max_abs};
-use crate::solver::spectrum::{Eigen, Spectrum, leading_eigenpairs, prediction};
+use crate::solver::spectrum::{Eigen, Eigenpair, Spectrum, leading_eigenpairs, prediction};
 use crate::solver::{SolveError, Solver, TwoGrid};
 
 /// Pairs enough for the outliers that a few rooms give K, found as well as a line in a figure asks.
@@ -121,12 +121,11 @@ impl Band {
     /// Every band of a spectrum with a self-adjoint form; none of another.
     fn all(spectrum: &Spectrum, bounce: &Block) -> Vec<Self> {
         let Some(weights) = &spectrum.weights else { return Vec::new() };
-        let band = |(b, pairs): (usize, &Vec<_>)| {
+        let band = |(b, pairs): (usize, &Vec<Eigenpair>)| {
             let share = |x: &[f64]| {
                 let terms = weights.column(b).iter().zip(x).zip(bounce.column(b));
                 terms.map(|((w, x), e)| w * x * e).sum::<f64>()
             };
-            let pairs: &Vec<crate::solver::spectrum::Eigenpair> = pairs;
             Self {
                 values: pairs.iter().map(|pair| pair.re).collect(),
                 parts: pairs.iter().map(|pair| share(&pair.vector_re) / (1.0 - pair.re)).collect(),

@@ -84,7 +84,7 @@ pub fn albedos(study: &AlbedoStudy) -> Sheet {
         if has_free_cell {
             *place = (LEFT + width, top - height - ROW_GAP + 24.0 + 26.0 * k as f64);
         } else {
-            place.0 += words[..k].iter().map(|text| text_width(text, SMALL) + 50.0).sum::<f64>();
+            place.0 += words[..k].iter().map(|text| text_width(text, SMALL) + 46.0).sum::<f64>();
         }
     }
     draw_key(&mut sheet, &words, places);
