@@ -28,13 +28,12 @@ impl Deltas {
         Self::NONE.with(mirrored(outgoing), weight)
     }
 
-    /// These and one more; light from a direction that is there already is added to it.
-    ///
-    /// # Panics
-    /// For a third direction: a surface joins two media, and each has one.
+    /// These and one more. A surface joins two media, and each has one direction: light from the side of one that is there already is
+    /// added to it.
     #[must_use]
     pub fn with(mut self, incident: Vec3, weight: f64) -> Self {
-        match self.terms[..self.n_terms].iter_mut().find(|term| term.incident == incident) {
+        let above = incident.z > 0.0;
+        match self.terms[..self.n_terms].iter_mut().find(|term| (term.incident.z > 0.0) == above) {
             Some(term) => term.weight += weight,
             None => {
                 self.terms[self.n_terms] = Delta { incident, weight };

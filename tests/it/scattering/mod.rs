@@ -3,6 +3,7 @@
 mod cubature;
 mod laws;
 mod lobes;
+mod tables;
 mod values;
 
 use etendue::geometry::Vec3;
