@@ -11,7 +11,7 @@ use super::outcome::SolverRun;
 use crate::assembly::System;
 use crate::linalg::{Block, LinearOperator, max_abs};
 use crate::solver::spectrum::{Eigen, Eigenpair, Spectrum, leading_eigenpairs, prediction};
-use crate::solver::{SolveError, Solver, TwoGrid};
+use crate::solver::{Solver, TwoGrid};
 
 /// Pairs enough for the outliers that a few rooms give K, found as well as a line in a figure asks.
 const PAIRS: Eigen = Eigen { n_pairs: 12, tolerance: 1e-8, dimension: 44, n_products: 400 };
@@ -41,28 +41,28 @@ struct Band {
 }
 
 impl Foretold {
-    /// Of the system whose answer is `truth`, of which only the size is used. Nothing is foretold where K has no self-adjoint form, nor
-    /// computed for methods without a theory here. At most some 400 products.
-    ///
-    /// # Errors
-    /// Products that are not finite.
-    pub fn of(system: &System, truth: &Block, methods: &[Box<dyn Solver>]) -> Result<Self, SolveError> {
+    /// Of the system whose answer is `truth`, of which only the size is used. Nothing is foretold where K has no self-adjoint form or no
+    /// light to speak of, nor computed for methods without a theory here. At most some 400 products.
+    pub fn of(system: &System, truth: &Block, methods: &[Box<dyn Solver>]) -> Self {
         let is_asked = |names: &[&str]| methods.iter().any(|method| names.contains(&method.name()));
         let equation = system.equation();
         let mut foretold = Self { bands: Vec::new(), two_grid: 1.0, scale: truth.max_abs() };
-        if is_asked(&["two-grid"]) {
-            let factors = TwoGrid { tolerance: 1.0, n_groups: None }.factor(equation, FACTOR_PRODUCTS)?;
+        // What cannot be foretold can still be measured: a method says itself what it refuses.
+        if is_asked(&["two-grid"])
+            && let Ok(factors) = (TwoGrid { tolerance: 1.0, n_groups: None }).factor(equation, FACTOR_PRODUCTS)
+        {
             foretold.two_grid = factors.into_iter().fold(0.0, f64::max);
         }
-        if is_asked(&METHODS) {
-            let n_pairs = PAIRS.n_pairs.min(system.n_bundles());
-            let dimension = PAIRS.dimension.min(system.n_bundles());
-            let spectrum = leading_eigenpairs(equation, Eigen { n_pairs, dimension, ..PAIRS })?;
-            let mut bounce = Block::zeros(system.n_bundles(), system.n_bands());
+        let n = system.n_bundles();
+        let pairs = Eigen { n_pairs: PAIRS.n_pairs.min(n), dimension: PAIRS.dimension.min(n), ..PAIRS };
+        if is_asked(&METHODS)
+            && let Ok(spectrum) = leading_eigenpairs(equation, pairs)
+        {
+            let mut bounce = Block::zeros(n, system.n_bands());
             system.transport().apply(system.emission(), &mut bounce);
             foretold.bands = Band::all(&spectrum, &bounce);
         }
-        Ok(foretold)
+        foretold
     }
 
     /// Sets what was foretold beside every point of a history.

@@ -64,7 +64,7 @@ pub(super) fn solve_all(
     reference.adjoint = Some(AdjointRun::from(&duality));
     let mut runs = vec![reference];
 
-    let foretold = Foretold::of(system, &truth, methods)?;
+    let foretold = Foretold::of(system, &truth, methods);
     for (k, method) in others.iter().enumerate() {
         progress((k + 1) as f64 / methods.len() as f64);
         let start = Instant::now();

@@ -176,7 +176,8 @@ fn words(svg: &str) -> Vec<String> {
 #[test]
 fn no_method_is_dropped_from_the_figure_of_albedos() {
     let mut outcome = mock::cornell();
-    // One that is refused everywhere has no point, but its name.
+    // One that is refused somewhere says so; one that is refused everywhere has no point, but its name.
+    outcome.albedos.as_mut().unwrap().levels[0].runs[6].refusal = Some("no".into());
     for level in &mut outcome.albedos.as_mut().unwrap().levels {
         (level.runs[5].stop, level.runs[5].refusal) = ("refused".into(), Some("no".into()));
         level.runs[5].products = f64::NAN;
@@ -186,7 +187,13 @@ fn no_method_is_dropped_from_the_figure_of_albedos() {
     for run in outcome.solvers.iter().filter(|run| run.kind == "iterative") {
         assert!(words.iter().any(|word| word.starts_with(&run.solver)), "{} is not in {words:?}", run.solver);
     }
-    for expected in ["Gauss–Seidel (refused)", "budget, 1\u{202f}000 products", "not there within it", "a = 0.999"] {
+    for expected in [
+        "Gauss–Seidel (refused)",
+        "Southwell (not at 0.5)",
+        "budget, 1\u{202f}000 products",
+        "not there within it",
+        "a = 0.999",
+    ] {
         assert!(words.iter().any(|word| word == expected), "'{expected}' is not in {words:?}");
     }
     let html = text(&files, "report.html");

@@ -156,7 +156,12 @@ fn draw(sheet: &mut Sheet, panel: &Panel, study: &AlbedoStudy, part: &Part) {
             let clear = if is_unfinished(run) { 16.0 } else { 6.0 };
             sheet.line(vec![(end.0 + clear, end.1), (panel.right + 10.0, height)], Stroke::solid(look.colour, 0.75));
         }
-        let name = if run.refusal.is_some() { format!("{} (refused)", run.solver) } else { run.solver.clone() };
+        let is_refused = |level: &&AlbedoLevel| level.runs[*i].refusal.is_some();
+        let name = match study.levels.iter().find(is_refused) {
+            Some(level) if run.refusal.is_none() => format!("{} (not at {})", run.solver, level.albedo),
+            Some(_) => format!("{} (refused)", run.solver),
+            None => run.solver.clone(),
+        };
         let colour = if end.is_some() { look.colour } else { GREY };
         sheet.words((panel.right + 14.0, height), name, NORMAL, colour, Anchor::Start);
     }

@@ -141,3 +141,15 @@ fn albedos_out_of_range_are_refused_before_the_work() {
     super::etendue(&["study", "maze", "--albedo", "white"]).assert_refused(64, &["white", "--albedo"]);
     super::etendue(&["study", "maze", "--max-products", "9"]).assert_refused(64, &["--albedo"]);
 }
+
+#[test]
+fn a_black_scene_is_a_study_too() {
+    // K = 0: there is no spectrum to foretell from, and what rests on a coarse space may say so.
+    let desk = Desk::new(&[("room.xml", FURNACE.as_bytes())]);
+    let black = ["study", "room.xml", "-D", "albedo=0", "--patch-size", "1", "--solvers", "all", "-o", "report"];
+    let run = desk.run(&[&black[..], &FEW, &["--albedo", "0"]].concat());
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    for run in read_json(&desk.path("report/report.json"))["solvers"].as_array().unwrap() {
+        assert!(run["stop"] == "refused" || super::number(&run["error"]) == 0.0, "{run}");
+    }
+}
