@@ -1,5 +1,6 @@
 //! Two surfaces mixed.
 
+use super::choice::{Choice, choose};
 use super::parameter::{Examination, ParameterError};
 use super::{Brdf, Deltas};
 use crate::geometry::Vec3;
@@ -45,12 +46,10 @@ impl Brdf for Blend {
     }
 
     fn sample(&self, outgoing: Vec3, [u, v]: [f64; 2]) -> Option<Vec3> {
-        // Pick a part with the first number, then use the rest of it again.
         let [first, second] = &self.parts;
-        if u < self.weight {
-            second.sample(outgoing, [u / self.weight, v])
-        } else {
-            first.sample(outgoing, [((u - self.weight) / (1.0 - self.weight)).min(1.0 - 0.5 * f64::EPSILON), v])
+        match choose(1.0 - self.weight, u) {
+            Choice::First(u) => first.sample(outgoing, [u, v]),
+            Choice::Second(u) => second.sample(outgoing, [u, v]),
         }
     }
 

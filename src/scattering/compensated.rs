@@ -1,6 +1,7 @@
 //! A rough conductor given back what it loses between facets.
 
 use super::Brdf;
+use super::choice::{Choice, choose};
 use super::graded_table::GradedTable;
 
 use super::microfacet::Microfacets;
@@ -89,11 +90,10 @@ impl Brdf for CompensatedConductor {
         if outgoing.z <= 0.0 {
             return None;
         }
-        let share = self.share(outgoing);
-        if u < share {
-            return self.once.sample(outgoing, [u / share, v]);
+        match choose(self.share(outgoing), u) {
+            Choice::First(u) => self.once.sample(outgoing, [u, v]),
+            Choice::Second(u) => Some(warp::cosine_hemisphere([u, v]).into()),
         }
-        Some(warp::cosine_hemisphere([((u - share) / (1.0 - share)).min(1.0 - f64::EPSILON), v]).into())
     }
 
     fn pdf(&self, outgoing: Vec3, incident: Vec3) -> f64 {

@@ -17,7 +17,7 @@ use super::graded_table::GradedTable;
 use super::half_vectors::{Lobe, Tail};
 use super::parameter::{Examination, ParameterError};
 use crate::geometry::Vec3;
-use crate::stats::special::{complementary_error_function, ln_gamma};
+use crate::stats::special::{complementary_error_function, ln_beta};
 use std::f64::consts::{PI, TAU};
 use std::sync::LazyLock;
 
@@ -157,10 +157,7 @@ impl Microfacets {
         match self.masking {
             Masking::Separable => 1.0 / ((1.0 + first) * (1.0 + second)),
             Masking::Correlated if same_side => 1.0 / (1.0 + (first + second)),
-            Masking::Correlated if first + second < f64::MAX => {
-                let (first, second) = if first <= second { (first, second) } else { (second, first) };
-                (ln_gamma(1.0 + first) + ln_gamma(1.0 + second) - ln_gamma(2.0 + (first + second))).exp()
-            }
+            Masking::Correlated if first + second < f64::MAX => ln_beta(1.0 + first, 1.0 + second).exp(),
             Masking::Correlated => 0.0,
         }
     }

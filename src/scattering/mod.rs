@@ -4,6 +4,7 @@ mod blend;
 mod blinn_phong;
 mod brdf;
 mod chandrasekhar;
+mod choice;
 mod compensated;
 mod conductor;
 

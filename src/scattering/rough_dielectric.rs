@@ -1,6 +1,7 @@
 //! Ground glass: small facets that reflect and refract.
 
 use super::Brdf;
+use super::choice::{Choice, choose};
 use super::dielectric::Glass;
 use super::fresnel;
 
@@ -137,13 +138,12 @@ impl Brdf for RoughDielectric {
         if outgoing.z == 0.0 {
             return None;
         }
-        let share = self.share(outgoing);
         let above = lifted(outgoing);
         let back = |direction: Vec3| if outgoing.z > 0.0 { direction } else { flipped(direction) };
-        if u < share {
-            return sample_glossy(&self.facets, above, [u / share, v]).map(back);
-        }
-        let normal = self.facets.sample_visible(above, [((u - share) / (1.0 - share)).min(1.0 - f64::EPSILON), v]);
+        let normal = match choose(self.share(outgoing), u) {
+            Choice::First(u) => return sample_glossy(&self.facets, above, [u, v]).map(back),
+            Choice::Second(u) => self.facets.sample_visible(above, [u, v]),
+        };
         let facet = RefractingFacet::new(above, normal, 0.0, self.glass.relative_index_from(outgoing));
         let passes = facet.interface.reflectance < 1.0 && facet.refracted.z < 0.0;
         passes.then(|| back(facet.refracted.normalize()))

@@ -1,6 +1,7 @@
 //! Rough plastic: paint under a clear coat of small facets.
 
 use super::Brdf;
+use super::choice::{Choice, choose};
 use super::fresnel;
 use super::graded_table::GradedTable;
 use super::half_vectors::{Rim, integrate};
@@ -107,11 +108,10 @@ impl Brdf for RoughPlastic {
         if outgoing.z <= 0.0 {
             return None;
         }
-        let share = self.share(outgoing);
-        if u < share {
-            return sample_glossy(&self.facets, outgoing, [u / share, v]);
+        match choose(self.share(outgoing), u) {
+            Choice::First(u) => sample_glossy(&self.facets, outgoing, [u, v]),
+            Choice::Second(u) => Some(warp::cosine_hemisphere([u, v]).into()),
         }
-        Some(warp::cosine_hemisphere([((u - share) / (1.0 - share)).min(1.0 - f64::EPSILON), v]).into())
     }
 
     fn pdf(&self, outgoing: Vec3, incident: Vec3) -> f64 {

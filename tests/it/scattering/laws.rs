@@ -1,7 +1,7 @@
 //! Every BRDF × every law.
 
 use super::cubature::{about_the_mirror, over_directions, over_facets};
-use super::{BRDFS, index_at, outgoing_directions};
+use super::{BRDFS, direction_of_cosine, index_at, outgoing_directions};
 use crate::sphere::{Cells, test_sampler};
 use etendue::geometry::Vec3;
 use etendue::sampling::{Streams, warp};
@@ -12,6 +12,9 @@ use etendue::stats::sidak_level;
 const SIGNIFICANCE: f64 = 1e-6;
 /// A few roundings of a product of ten factors.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// What the surfaces' own quadratures may leave.
+const QUADRATURE: f64 = 1e-9;
 
 #[test]
 fn brdfs_are_positive_and_reciprocal_to_the_bit() {
@@ -113,7 +116,7 @@ fn albedo_is_the_integral_of_the_brdf() {
 fn samplers_follow_their_densities() {
     let cells = Cells { low: -1.0, n_rings: 40, n_sectors: 24 };
     // What the rules of 960 cells may leave together.
-    const QUADRATURE: f64 = 1e-7;
+    const CELLS: f64 = 1e-7;
     let n = BRDFS.iter().map(|brdf| outgoing_directions(&**brdf).len()).sum();
     for brdf in BRDFS.iter().filter(|brdf| is_smooth(&***brdf)) {
         for outgoing in outgoing_directions(&**brdf) {
@@ -124,7 +127,7 @@ fn samplers_follow_their_densities() {
                 assert!(brdf.sample(outgoing, [0.3, 0.7]).is_none(), "{name}");
                 continue;
             }
-            assert!(total <= 1.0 + QUADRATURE, "{name} at cosine {}: the density integrates to {total}", outgoing.z);
+            assert!(total <= 1.0 + CELLS, "{name} at cosine {}: the density integrates to {total}", outgoing.z);
             let test = test_sampler(cells, &name, 50_000, |u| brdf.sample(outgoing, u), pdf);
             assert!(test.p_value > sidak_level(SIGNIFICANCE, n), "{name} at cosine {}: {test:?}", outgoing.z);
         }
@@ -147,6 +150,33 @@ fn samplers_reach_all_that_is_scattered() {
                     assert!(incident.z == 0.0 || brdf.pdf(b, incident) > 0.0, "{name}: {incident:?}");
                 }
                 None => assert!(brdf.lambertian().is_none() || b.z <= 0.0),
+            }
+        }
+    }
+}
+
+/// As a direction sinks to the horizon nothing overflows, and no albedo leaves [0, 1].
+#[test]
+fn grazing_light_is_finite() {
+    for brdf in BRDFS.iter() {
+        let name = brdf.description();
+        for cosine in [1e-3, 1e-6, 1e-12, 1e-30] {
+            let low = direction_of_cosine(cosine);
+            let others = [Vec3::Z, direction_of_cosine(0.5), Vec3::new(-low.x, -low.y, low.z), low];
+            let sides = if brdf.is_transmissive() { vec![1.0, -1.0] } else { vec![1.0] };
+            for (other, side) in others.into_iter().flat_map(|other| sides.iter().map(move |side| (other, *side))) {
+                let incident = Vec3::new(other.x, other.y, side * other.z);
+                let [there, back] = [brdf.eval(0, incident, low), brdf.eval(0, low, incident)];
+                let [pdf, reverse] = [brdf.pdf(low, incident), brdf.pdf(incident, low)];
+                let all = [there, back, pdf, reverse];
+                assert!(all.iter().all(|f| f.is_finite() && *f >= 0.0), "{name} at {cosine:e}, {other:?}: {all:?}");
+            }
+            for side in sides {
+                let outgoing = Vec3::new(low.x, low.y, side * low.z);
+                let albedo = brdf.albedo(0, outgoing);
+                assert!((0.0..=1.0 + QUADRATURE).contains(&albedo), "{name} at {cosine:e}: {albedo}");
+                let sample = brdf.sample(outgoing, [0.3, 0.6]);
+                assert!(sample.is_none_or(|incident| (incident.length() - 1.0).abs() < 1e-15), "{name}: {sample:?}");
             }
         }
     }
