@@ -1,4 +1,20 @@
 //! How light turns at a surface: BRDFs, and surfaces that let light through.
+//!
+//! | surface | smooth part | mirrors | sides |
+//! |---|---|---|---|
+//! | [`Lambert`], [`LommelSeeliger`], [`Chandrasekhar`] | diffuse, clouds seen once and to the end | – | 1 |
+//! | [`Phong`], [`BlinnPhong`], [`Ward`] | lobes without facets | – | 1 |
+//! | [`Conductor`] | – | 1 | 1 |
+//! | [`RoughConductor`], [`CompensatedConductor`] | [`Microfacets`] of [`Metal`] | – | 1 |
+//! | [`Plastic`], [`RoughPlastic`] | diffuse under a coat | 1, – | 1 |
+//! | [`Dielectric`], [`ThinDielectric`] | – | 2 | 2 |
+//! | [`RoughDielectric`] | [`Microfacets`] of [`Glass`] | – | 2 |
+//! | [`DiffuseTransmission`] | paper | – | 2 |
+//! | [`Tabulated`], [`HalfDifferenceTable`] | measured | – | 1 |
+//! | [`Blend`] | of any two | theirs | theirs |
+//!
+//! Conventions and laws are [`Brdf`]'s. Parameters bear Mitsuba 3's names. Directional albedos are closed forms or quadratures of stated error,
+//! never samples; light that meets a second facet is absorbed, but for [`CompensatedConductor`].
 
 mod blend;
 mod blinn_phong;

@@ -39,7 +39,7 @@ impl RoughDielectric {
         Ok(Self { glass, facets })
     }
 
-    /// The directional albedo with its error, by quadrature over slopes (some milliseconds).
+    /// The directional albedo with its error, by quadrature over slopes: some 10 ms, tenfold where the axes' roughness differs.
     pub fn albedo_with_error(&self, band: usize, outgoing: Vec3) -> Quadrature {
         if outgoing.z == 0.0 {
             return Quadrature::ZERO;

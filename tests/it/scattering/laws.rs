@@ -89,25 +89,25 @@ fn albedo_is_the_integral_of_the_brdf() {
     const SLIVERS: f64 = 1e-7;
     for brdf in BRDFS.iter() {
         let name = brdf.description();
-        for outgoing in outgoing_directions(&**brdf) {
-            for band in 0..brdf.n_bands() {
-                let albedo = brdf.albedo(band, outgoing);
-                let f = |incident: Vec3| brdf.eval(band, incident, outgoing) * incident.z.abs();
-                let ((smooth, error), allowed) = if name.starts_with("phong") {
-                    ((about_the_mirror(&**brdf, band, outgoing), 0.0), TOLERANCE)
-                } else if name.starts_with("roughdielectric") {
-                    (over_facets(&**brdf, band, outgoing, TOLERANCE, 5_000), SLIVERS)
-                } else {
-                    (over_directions(brdf.is_transmissive(), TOLERANCE, 20_000, f), TOLERANCE)
-                };
-                let integral = smooth + brdf.deltas(band, outgoing).weight();
-                assert!((0.0..=1.0 + 64.0 * f64::EPSILON).contains(&albedo), "{name}: {albedo}");
-                assert!(
-                    (albedo - integral).abs() < error + allowed && error < 1e-6,
-                    "{name} at cosine {}: {albedo} against {integral} ± {error:e}",
-                    outgoing.z
-                );
-            }
+        for (k, outgoing) in outgoing_directions(&**brdf).into_iter().enumerate() {
+            // Quadratures are costly: bands take turns.
+            let band = k % brdf.n_bands();
+            let albedo = brdf.albedo(band, outgoing);
+            let f = |incident: Vec3| brdf.eval(band, incident, outgoing) * incident.z.abs();
+            let ((smooth, error), allowed) = if name.starts_with("phong") {
+                ((about_the_mirror(&**brdf, band, outgoing), 0.0), TOLERANCE)
+            } else if name.starts_with("roughdielectric") {
+                (over_facets(&**brdf, band, outgoing, TOLERANCE, 5_000), SLIVERS)
+            } else {
+                (over_directions(brdf.is_transmissive(), TOLERANCE, 20_000, f), TOLERANCE)
+            };
+            let integral = smooth + brdf.deltas(band, outgoing).weight();
+            assert!((0.0..=1.0 + 64.0 * f64::EPSILON).contains(&albedo), "{name}: {albedo}");
+            assert!(
+                (albedo - integral).abs() < error + allowed && error < 1e-6,
+                "{name} at cosine {}: {albedo} against {integral} ± {error:e}",
+                outgoing.z
+            );
         }
     }
 }
@@ -122,7 +122,7 @@ fn samplers_follow_their_densities() {
         for outgoing in outgoing_directions(&**brdf) {
             let name = brdf.description();
             let pdf = |incident| brdf.pdf(outgoing, incident);
-            let total: f64 = cells.integrate(16, pdf).iter().sum();
+            let total: f64 = cells.integrate(12, pdf).iter().sum();
             if total == 0.0 {
                 assert!(brdf.sample(outgoing, [0.3, 0.7]).is_none(), "{name}");
                 continue;
