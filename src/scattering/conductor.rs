@@ -57,6 +57,10 @@ impl Brdf for Conductor {
         Deltas::mirror(outgoing, self.metal.reflectance(band, outgoing.z.min(1.0)))
     }
 
+    fn mirror_share(&self, outgoing: Vec3) -> f64 {
+        if self.deltas(0, outgoing).is_empty() { 0.0 } else { 1.0 }
+    }
+
     fn lambertian(&self) -> Option<&[f64]> {
         None
     }

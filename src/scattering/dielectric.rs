@@ -132,6 +132,10 @@ impl Brdf for Dielectric {
         mirror.with(refracted(outgoing, eta, interface.transmitted_cosine), passed)
     }
 
+    fn mirror_share(&self, outgoing: Vec3) -> f64 {
+        if self.deltas(0, outgoing).is_empty() { 0.0 } else { 1.0 }
+    }
+
     fn is_transmissive(&self) -> bool {
         true
     }
@@ -197,6 +201,10 @@ impl Brdf for ThinDielectric {
         let reflected = self.glass.reflected(band) * 2.0 * once / (1.0 + once);
         let passed = self.glass.transmitted(band) * (1.0 - once) / (1.0 + once);
         Deltas::mirror(outgoing, reflected).with(-outgoing, passed)
+    }
+
+    fn mirror_share(&self, outgoing: Vec3) -> f64 {
+        if self.deltas(0, outgoing).is_empty() { 0.0 } else { 1.0 }
     }
 
     fn is_transmissive(&self) -> bool {

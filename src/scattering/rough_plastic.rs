@@ -80,9 +80,7 @@ impl RoughPlastic {
 
     /// Chance that a sample is mirrored.
     fn share(&self, outgoing: Vec3) -> f64 {
-        let mirror = self.coat(outgoing.z);
-        let base = self.base.diffuse_reflectance.iter().fold(0.0, |sum, d| sum + d) / self.n_bands() as f64;
-        (mirror / (mirror + (1.0 - mirror) * base)).clamp(0.1, 0.9)
+        self.base.mirror_share(self.coat(outgoing.z))
     }
 }
 

@@ -82,6 +82,21 @@ fn mirror_like_terms_are_reciprocal_and_refract_as_snell_says() {
 }
 
 #[test]
+fn mirror_shares_tell_what_is_smooth() {
+    for brdf in BRDFS.iter() {
+        let name = brdf.description();
+        let mut stream = Streams::new(101, "shares").stream(0, 0);
+        for _ in 0..200 {
+            let [a, b] = [0, 1].map(|_| Vec3::from(warp::uniform_sphere(stream.uniform2())));
+            let share = brdf.mirror_share(a);
+            assert_eq!(share == 0.0, brdf.deltas(0, a).is_empty(), "{name}: {share}");
+            assert!((0.0..=1.0).contains(&share) && (share < 1.0 || brdf.eval(0, b, a) == 0.0), "{name}: {share}");
+            assert!(share < 1.0 || brdf.sample(a, stream.uniform2()).is_none(), "{name}");
+        }
+    }
+}
+
+#[test]
 fn albedo_is_the_integral_of_the_brdf() {
     // Asked of the adaptive cubature, and what 64 × 512 nodes of the rule about the mirror leave.
     const TOLERANCE: f64 = 1e-9;
