@@ -2,8 +2,8 @@
 
 use super::Brdf;
 use super::deltas::Deltas;
+use super::metal::Metal;
 use super::parameter::ParameterError;
-use super::rough_conductor::Metal;
 use crate::geometry::Vec3;
 
 /// A mirror of metal, Mitsuba 3's `conductor`: one mirror-like term of weight F(cosθ), no smooth part.

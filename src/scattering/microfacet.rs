@@ -62,6 +62,11 @@ static SCALED_COMPLEMENT: LazyLock<GradedTable> = LazyLock::new(|| {
     })
 });
 
+/// erfc(a), a ≥ 0, to 1e-16.
+fn complement(a: f64) -> f64 {
+    if a < SHALLOW { (-a * a).exp() * SCALED_COMPLEMENT.at(a / SHALLOW) } else { 0.0 }
+}
+
 impl Microfacets {
     /// Roughness α along the local x and y axes.
     ///
@@ -212,7 +217,7 @@ impl Microfacets {
 /// with Newton's method, kept within a bracket. Some ten error functions.
 fn visible_slope(cosine: f64, sine: f64, uniform: f64) -> f64 {
     let distribution = |p: f64| {
-        let below = if p < 0.0 { complementary_error_function(-p) } else { 2.0 - complementary_error_function(p) };
+        let below = if p < 0.0 { complement(-p) } else { 2.0 - complement(p) };
         0.5 * (cosine * PI.sqrt() * below + sine * (-p * p).exp())
     };
     let mut low = -GAUSSIAN_REACH;

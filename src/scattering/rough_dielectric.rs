@@ -2,8 +2,8 @@
 
 use super::Brdf;
 use super::choice::{Choice, choose};
-use super::dielectric::Glass;
 use super::fresnel;
+use super::glass::Glass;
 
 use super::microfacet::Microfacets;
 use super::parameter::{Examination, ParameterError};

@@ -29,8 +29,8 @@ use std::f64::consts::FRAC_1_PI;
 /// albedo = E(o_z) + T(o_z) d (2 ∫ T μ dμ/η²)/(1 − d' R) ≤ E + T ≤ 1
 /// ```
 ///
-/// What is lost between facets is absorbed, on the way in, under the coat and on the way out. T is tabulated when the surface is made (some
-/// 0.5 s with R), and the table is the surface. Samples either part by its approximate share.
+/// What is lost between facets is absorbed, on the way in, under the coat and on the way out. T is tabulated when the surface is made (up to a
+/// second, with R), and the table is the surface. Samples either part by its approximate share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoughPlastic {
     base: Base,
