@@ -2,7 +2,7 @@
 //!
 //! A printed table; of every number the best of some turns, on one thread for pairs and on all for scenes.
 
-use etendue::assembly::{Exchange, Ladder, Nodes, assemble, unoccluded};
+use etendue::assembly::{Exchange, Ladder, Nodes, Occlusion, assemble, unoccluded};
 use etendue::basis::{Bundles, Resolution};
 use etendue::gallery;
 use etendue::geometry::{Polygon, Vec3};
@@ -34,12 +34,13 @@ fn shortest(n_turns: usize, mut turn: impl FnMut()) -> f64 {
 
 fn scenes() {
     let scene = gallery::cornell_box();
+    let rays = Exchange { occlusion: Occlusion::by_rays(64), ..Exchange::default() };
     println!("\n{:>24} {:>9} {:>9} {:>11}", "cornell-box, patches", "seconds", "facing", "ns a pair");
     for patch_size in [0.5, 0.25, 0.125] {
         let bundles = Bundles::new(&scene, Resolution { patch_size, n_directions: 1 }).expect("a resolution");
         let mut n_pairs = 0;
         let seconds = shortest(3, || {
-            let system = assemble(&scene, &bundles, Exchange::default()).expect("a diffuse scene");
+            let system = assemble(&scene, &bundles, rays).expect("a diffuse scene");
             n_pairs = system.report().n_pairs;
         });
         println!("{:>24} {seconds:>9.3} {n_pairs:>9} {:>11.0}", bundles.n_bundles(), 1e9 * seconds / n_pairs as f64);

@@ -42,7 +42,7 @@ const DOORS: [(&str, &[&str]); 21] = [
     ("png", &["image"]),
     ("roxmltree", &["scene"]),
     ("rand_philox", &["sampling"]),
-    ("statrs", &["stats"]),
+    ("libm", &["stats"]),
     ("clap", &["cli"]),
     ("indicatif", &["cli"]),
     ("blake3", &["linalg", "scene"]),

@@ -4,7 +4,9 @@
 //! of directions. Bundles are numbered element by element, bin by bin.
 
 mod bundles;
+mod directions;
 mod grid;
 mod hierarchy;
 
 pub use bundles::{BasisError, Bundles, Element, Patch, Resolution};
+pub use directions::{Directions, DirectionsError};

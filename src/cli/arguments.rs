@@ -45,7 +45,9 @@ Examples:
 const SENSITIVITY_EXAMPLES: &str = "\
 Examples:
   etendue sensitivity cornell-box --sensor irradiance:floor         mean irradiance of a surface
-  etendue sensitivity cornell-box --sensor radiance:back --json     mean radiance leaving one, as JSON";
+  etendue sensitivity cornell-box --sensor radiance:back --json     mean radiance leaving one, as JSON
+  etendue sensitivity cornell-box --sensor irradiance:floor --what-if light.emission=9 --what-if back.albedo=0.3,0.2,0.1
+                                                                    the reading after each change";
 
 const EXPORT_EXAMPLES: &str = "\
 Examples:
@@ -64,7 +66,8 @@ const STUDY_EXAMPLES: &str = "\
 Examples:
   etendue study cornell-box                         writes out/cornell-box/report.html and its files
   etendue study room.xml --patch-size 0.1 -o room   a scene file, cut as finely as you say
-  etendue study two-rooms --solvers all             every method there is";
+  etendue study two-rooms --solvers all             every method there is
+  etendue study maze --albedo 0.5,0.9,0.99,0.999    products against albedo, too";
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
@@ -170,6 +173,15 @@ pub struct Study {
     #[arg(long, value_name = "RESIDUAL", default_value = "1e-12", value_parser = positive, allow_negative_numbers = true)]
     pub tolerance: f64,
 
+    /// Look at the scene with all that reflects at these albedos as well, each at least 0 and below 1
+    #[arg(long, value_name = "ALBEDOS", value_delimiter = ',', allow_negative_numbers = true)]
+    pub albedo: Vec<f64>,
+
+    /// Stop a method at an albedo after this many products with K
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = products, allow_negative_numbers = true)]
+    #[arg(requires = "albedo")]
+    pub max_products: u64,
+
     /// Most samples a bundle for the walks on the matrix
     #[arg(long, value_name = "N", default_value_t = 4096, value_parser = samples, allow_negative_numbers = true)]
     pub walk_samples: u64,
@@ -232,6 +244,11 @@ pub struct Sensitivity {
     #[arg(long, value_name = "SENSOR")]
     pub sensor: String,
 
+    /// The reading if a surface were another, such as floor.albedo=0.3 or lamp.emission=9,8,5 (a number, or one a band); may be
+    /// given several times
+    #[arg(long, value_name = "CHANGE")]
+    pub what_if: Vec<String>,
+
     /// Write the JSON object to this file too, whole or not at all
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
@@ -274,7 +291,7 @@ pub struct Check {
 }
 
 fn solver_names() -> Vec<&'static str> {
-    solver::everyone(1.0).iter().map(|solver| solver.name()).collect()
+    solver::all(1.0).iter().map(|solver| solver.name()).collect()
 }
 
 fn positive(text: &str) -> Result<f64, String> {

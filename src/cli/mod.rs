@@ -16,6 +16,7 @@ mod sensitivity;
 mod solve;
 mod spectrum;
 mod study;
+mod summary;
 mod table;
 
 use arguments::{Arguments, Command};

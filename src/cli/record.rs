@@ -4,7 +4,7 @@ use crate::assembly::System;
 use crate::basis::Bundles;
 use crate::scene::{Scene, Side};
 use crate::solver::{Solution, SolveReport, Stop};
-use crate::study::{Provenance, tessellations};
+use crate::study::{Duality, Provenance, tessellations};
 use serde::Serialize;
 
 /// What `solve --json` prints. Shapes and units are those of the crate's front page; lengths in metres.
@@ -21,6 +21,8 @@ pub struct Record<'a> {
     laws: LawsRecord,
     exchange: ExchangeRecord,
     report: ReportRecord,
+    /// One reading by L and by importance, both by this method; null where it refused the adjoint equation.
+    duality: Option<&'a Duality>,
     /// What stands for what: tessellated shapes.
     notes: Vec<String>,
     provenance: Provenance,
@@ -111,13 +113,13 @@ impl ReportRecord {
     }
 }
 
-/// The record of a solve.
+/// The record of a solve that took so many seconds.
 pub fn record<'a>(
     scene: &'a Scene,
     bundles: &Bundles,
     system: &System,
-    solution: &Solution,
-    seconds: f64,
+    (solution, seconds): (&Solution, f64),
+    duality: Option<&'a Duality>,
     provenance: Provenance,
 ) -> Record<'a> {
     let irradiance = system.irradiance(&solution.radiance);
@@ -156,6 +158,7 @@ pub fn record<'a>(
             repair_strength: exchange.repair.map_or(0.0, |repair| repair.strongest),
         },
         report: ReportRecord::new(&solution.report, seconds),
+        duality,
         notes: tessellations(scene),
         provenance,
     }

@@ -8,7 +8,9 @@ use super::progress::Bars;
 use super::provenance::provenance;
 use super::scene::choose;
 use crate::scene::Scene;
-use crate::study::{Provenance, Quantity, SensitivityOutcome, Sensor, Watch, sensitivity};
+use crate::study::{
+    Change, Property, Provenance, Quantity, SensitivityOutcome, Sensor, Watch, sensitivity_and_what_if,
+};
 use serde::Serialize;
 
 /// What `sensitivity --json` prints.
@@ -26,8 +28,14 @@ struct Record<'a> {
 
 pub fn run(arguments: &Arguments, asked: &Sensitivity, command: Vec<String>) -> Result<(), Failure> {
     let method = asked.method.solver()?;
-    let chosen = choose(&asked.scene, |_, n| memory::to_solve(&*method, n))?;
+    let has_changes = !asked.what_if.is_empty();
+    let chosen = choose(&asked.scene, |scene, n| {
+        // Factors a band; beside them the rows that change, their responses and the unit vectors that ask for these.
+        let factors = if has_changes { 8 * scene.n_bands() as u64 + 24 } else { 0 };
+        memory::to_solve(&*method, n).max(memory::with_square(n, factors))
+    })?;
     let sensor = sensor(&chosen.scene, &asked.sensor)?;
+    let changes = asked.what_if.iter().map(|text| change(&chosen.scene, text)).collect::<Result<Vec<_>, _>>()?;
     if let Some(path) = &asked.output {
         output::check_file(path)?;
     }
@@ -36,7 +44,7 @@ pub fn run(arguments: &Arguments, asked: &Sensitivity, command: Vec<String>) -> 
     let exchange = asked.scene.exchange();
     let (bundles, system) = chosen.assemble(arguments, exchange, &bars)?;
     bars.progress("solve", 0.0);
-    let outcome = sensitivity(&chosen.scene, &bundles, &system, sensor, &*method)?;
+    let outcome = sensitivity_and_what_if(&chosen.scene, &bundles, &system, sensor, &*method, &changes)?;
     bars.progress("solve", 1.0);
     drop(bars);
 
@@ -64,7 +72,6 @@ pub fn run(arguments: &Arguments, asked: &Sensitivity, command: Vec<String>) -> 
 
 /// Understands `irradiance:NAME` and `radiance:NAME`.
 fn sensor(scene: &Scene, text: &str) -> Result<Sensor, Failure> {
-    let names = || scene.surfaces().iter().map(|surface| surface.name.as_str());
     let wrong = |found: &str, expected: &str| {
         Failure::new(Exit::Input, format!("--sensor {text}: {found}\n  = expected: {expected}"))
     };
@@ -74,11 +81,45 @@ fn sensor(scene: &Scene, text: &str) -> Result<Sensor, Failure> {
         "irradiance" => Quantity::Irradiance,
         other => return Err(wrong(&format!("'{other}' is no quantity"), "irradiance:SURFACE or radiance:SURFACE")),
     };
-    let surface = names().position(|surface| surface == name).ok_or_else(|| {
-        let list = names().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", ");
-        wrong(&format!("there is no surface '{name}'"), &format!("one of {list}"))
-    })?;
+    let surface = surface(scene, name).map_err(|list| wrong(&format!("there is no surface '{name}'"), &list))?;
     Ok(Sensor { quantity, surface })
+}
+
+/// Understands `NAME.albedo=VALUES` and `NAME.emission=VALUES`, one value or one a band.
+fn change(scene: &Scene, text: &str) -> Result<Change, Failure> {
+    let wrong = |found: String, expected: &str| {
+        Failure::new(Exit::Input, format!("--what-if {text}: {found}\n  = expected: {expected}"))
+    };
+    const FORM: &str = "SURFACE.albedo=VALUE or SURFACE.emission=VALUE";
+    let parts = text.rsplit_once('=').and_then(|(place, values)| Some((place.rsplit_once('.')?, values)));
+    let ((name, property), values) = parts.ok_or_else(|| wrong("this is no change of a surface".to_string(), FORM))?;
+    let surface = surface(scene, name).map_err(|list| wrong(format!("there is no surface '{name}'"), &list))?;
+    let (property, range, expected) = match property {
+        "albedo" => (Property::Albedo, 0.0..=1.0, "albedos from 0 to 1"),
+        "emission" => (Property::Emission, 0.0..=f64::MAX, "finite radiances, 0 or more"),
+        other => return Err(wrong(format!("'{other}' is no property of a surface"), FORM)),
+    };
+    let value = |word: &str| match word.trim().parse::<f64>() {
+        Ok(value) if range.contains(&value) => Ok(value),
+        _ => Err(wrong(format!("'{word}' is out of range"), expected)),
+    };
+    let mut values = values.split(',').map(value).collect::<Result<Vec<f64>, _>>()?;
+    let n_bands = scene.n_bands();
+    if values.len() == 1 {
+        values = vec![values[0]; n_bands];
+    }
+    if values.len() != n_bands {
+        let expected = format!("one value, or one for each of {}", scene.bands().join(", "));
+        return Err(wrong(format!("there are {} values", values.len()), &expected));
+    }
+    Ok(Change { name: text.to_string(), surface, property, values })
+}
+
+/// The number of the surface of this name, or the names that there are.
+fn surface(scene: &Scene, name: &str) -> Result<usize, String> {
+    let names = || scene.surfaces().iter().map(|surface| surface.name.as_str());
+    let list = || names().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", ");
+    names().position(|surface| surface == name).ok_or_else(|| format!("one of {}", list()))
 }
 
 /// Derivatives by surface, side by side.
@@ -94,6 +135,22 @@ fn table(record: &Record) -> String {
     for surface in &outcome.surfaces {
         let (albedo, emission) = (numbers(&surface.albedo), numbers(&surface.emission));
         text += &format!("{:width$}{albedo}  {emission}\n", surface.surface);
+    }
+    // What if, beside what the derivatives foretold.
+    let label = outcome.what_ifs.iter().map(|what| what.change.chars().count()).chain([7]).max().unwrap_or(7);
+    if !outcome.what_ifs.is_empty() {
+        text += &format!("\n{:label$}{:16}{heads}\n", "what if", "");
+    }
+    for what in &outcome.what_ifs {
+        let rows = [
+            (what.change.as_str(), "exactly", Some(&what.reading)),
+            ("", "first order", Some(&what.first_order)),
+            ("", "solved afresh", what.fresh.as_ref()),
+        ];
+        for (name, way, values) in rows {
+            let Some(values) = values else { continue };
+            text += &format!("{name:label$}  {way:14}{}\n", numbers(values));
+        }
     }
     let gaps =
         outcome.reading.iter().zip(&outcome.dual_reading).map(|(a, b)| (a - b).abs() / a.abs().max(f64::MIN_POSITIVE));

@@ -9,9 +9,10 @@ use super::progress::Bars;
 use super::provenance::provenance;
 use super::record::record;
 use super::scene::choose;
+use super::summary;
 use super::table::table;
-use crate::solver::{Iteration, SolveReport, Stop};
-use crate::study::Watch;
+use crate::solver::{Budget, Iteration, SolveReport, Stop};
+use crate::study::{LinearSensor, Watch};
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -42,6 +43,13 @@ pub fn run(arguments: &Arguments, solve: &Solve, command: Vec<String>) -> Result
     let solution = method.solve(system.equation(), &mut observer(arguments, solve))?;
     let seconds = start.elapsed().as_secs_f64();
     bars.progress("solve", 1.0);
+
+    // Read one sensor twice, by L and by its importance; an answer needs no second opinion to be one.
+    bars.progress("importance", 0.0);
+    let sensor = LinearSensor::of(&chosen.scene, &bundles, &system);
+    let mut within = Budget { products: budget(solve), observer: &mut () };
+    let duality = sensor.duality(&system, &solution.radiance, &*method, &mut within);
+    bars.progress("importance", 1.0);
     drop(bars);
 
     // Write the JSON object where it is wanted, or show a table.
@@ -49,7 +57,7 @@ pub fn run(arguments: &Arguments, solve: &Solve, command: Vec<String>) -> Result
         let settings =
             [("solver", method.name().to_string()), ("solver_tolerance", format!("{:e}", solve.method.tolerance))];
         let source = provenance(&chosen, command, &exchange, settings);
-        let object = record(&chosen.scene, &bundles, &system, &solution, seconds, source);
+        let object = record(&chosen.scene, &bundles, &system, (&solution, seconds), duality.as_ref().ok(), source);
         let text = serde_json::to_string(&object).map_err(|e| Failure::new(Exit::Internal, e.to_string()))? + "\n";
         if let Some(path) = &solve.output {
             output::write_file(path, text.as_bytes())?;
@@ -59,14 +67,18 @@ pub fn run(arguments: &Arguments, solve: &Solve, command: Vec<String>) -> Result
         }
     }
     if !arguments.json {
-        output::print(&table(&chosen.scene, &bundles, &system, &solution, seconds))?;
+        let duality = match &duality {
+            Ok(duality) => summary::duality(duality),
+            Err(error) => format!("duality: no importance, for {error}\n"),
+        };
+        output::print(&(table(&chosen.scene, &bundles, &system, &solution, seconds) + &duality))?;
     }
     check_converged(&solution.report, solve)
 }
 
 /// Tells of iterations where that was asked for, and ends them at the budget of products.
 pub fn observer(arguments: &Arguments, solve: &Solve) -> impl FnMut(Iteration<'_>) -> ControlFlow<()> {
-    let budget = solve.max_products.map_or(f64::INFINITY, |n| n as f64);
+    let budget = budget(solve);
     let is_told = arguments.verbose > 1;
     move |iteration| {
         if is_told {
@@ -75,6 +87,10 @@ pub fn observer(arguments: &Arguments, solve: &Solve) -> impl FnMut(Iteration<'_
         }
         if iteration.products >= budget { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
+}
+
+fn budget(solve: &Solve) -> f64 {
+    solve.max_products.map_or(f64::INFINITY, |n| n as f64)
 }
 
 /// The answer is there either way; whether it is the one asked for, the exit code says.

@@ -6,10 +6,11 @@ use super::output;
 use super::progress::Bars;
 use super::provenance::provenance;
 use super::scene::choose;
+use super::summary::summary;
 use crate::assembly::Gather;
 use crate::study::{SolverRun, StudyOutcome, StudySettings};
 use crate::{report, solver, study};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Family-wise significance of the comparisons.
 const SIGNIFICANCE: f64 = 1e-6;
@@ -18,6 +19,7 @@ const SIGNIFICANCE: f64 = 1e-6;
 const N_BOUNCES: usize = 5;
 
 pub fn run(arguments: &Arguments, study: &Study, command: Vec<String>) -> Result<(), Failure> {
+    study::check_albedos(&study.albedo)?;
     let chosen = choose(&study.scene, |scene, n| study::memory_estimate(scene, n, N_BOUNCES))?;
     let scene = &chosen.scene;
     let folder = study.output.clone().unwrap_or_else(|| PathBuf::from("out").join(folder_name(scene.name())));
@@ -38,6 +40,8 @@ pub fn run(arguments: &Arguments, study: &Study, command: Vec<String>) -> Result
         solvers: solvers(&study.solvers),
         n_levels: 3,
         tolerance: study.tolerance,
+        albedos: study.albedo.clone(),
+        albedo_budget: study.max_products as f64,
         exchange: study.scene.exchange(),
         walk_samples: study.walk_samples,
         path_samples: study.path_samples,
@@ -87,8 +91,7 @@ fn folder_name(scene: &str) -> String {
 
 /// The methods asked for, the first direct one before all others: it is the reference.
 fn solvers(asked: &[String]) -> Vec<String> {
-    let all: Vec<(&str, bool)> =
-        solver::everyone(1.0).iter().map(|method| (method.name(), method.is_direct())).collect();
+    let all: Vec<(&str, bool)> = solver::all(1.0).iter().map(|method| (method.name(), method.is_direct())).collect();
     let is_asked = |name: &str| asked.iter().any(|word| word == name || word == "all");
     let mut chosen: Vec<(&str, bool)> = all.iter().copied().filter(|(name, _)| is_asked(name)).collect();
     match chosen.iter().position(|(_, is_direct)| *is_direct) {
@@ -98,10 +101,16 @@ fn solvers(asked: &[String]) -> Vec<String> {
     chosen.into_iter().map(|(name, _)| name.to_string()).collect()
 }
 
-fn describe(settings: &StudySettings) -> [(&'static str, String); 8] {
+fn describe(settings: &StudySettings) -> [(&'static str, String); 10] {
+    let albedos = match &settings.albedos[..] {
+        [] => "the scene's own".to_string(),
+        list => list.iter().map(f64::to_string).collect::<Vec<_>>().join(", "),
+    };
     [
         ("solvers", settings.solvers.join(", ")),
         ("solver_tolerance", format!("{:e}", settings.tolerance)),
+        ("albedos", albedos),
+        ("products_at_an_albedo", settings.albedo_budget.to_string()),
         ("walk_samples_a_bundle", settings.walk_samples.to_string()),
         ("path_samples_a_bundle", settings.path_samples.to_string()),
         ("significance", format!("{:e}", settings.significance)),
@@ -109,45 +118,4 @@ fn describe(settings: &StudySettings) -> [(&'static str, String); 8] {
         ("gather_rays_a_camera_ray", settings.gather.rays.to_string()),
         ("refinement_levels", settings.n_levels.to_string()),
     ]
-}
-
-/// What a person wants to know first.
-fn summary(outcome: &StudyOutcome, folder: &Path) -> String {
-    let width = outcome.solvers.iter().map(|run| run.solver.len()).fold(14, usize::max);
-    let mut text =
-        format!("{:width$} {:>9} {:>10} {:>10} {:>10}\n", "solver", "products", "seconds", "residual", "error");
-    for run in &outcome.solvers {
-        let products = if run.kind == "direct" || run.refusal.is_some() {
-            "–".to_string()
-        } else {
-            format!("{:.1}", run.products)
-        };
-        text += &format!(
-            "{:width$} {products:>9} {:>10.3} {:>10.1e} {:>10.1e}  {}\n",
-            run.solver, run.seconds, run.true_residual, run.error, run.stop
-        );
-        run.refusal.iter().for_each(|refusal| text += &format!("{:width$}   {refusal}\n", ""));
-    }
-    text += &format!("\n{:26} {:>9} {:>10} {:>10} {:>10}\n", "estimator", "slope", "seconds", "worst |z|", "p");
-    for run in &outcome.estimators {
-        let name = format!("{} ({})", run.estimator, run.truth);
-        text += &format!(
-            "{name:26} {:>9.2} {:>10.3} {:>10.2} {:>10.1e}\n",
-            run.slope, run.seconds, run.worst_z, run.p_value
-        );
-    }
-    let refinement = &outcome.refinement;
-    let order = match refinement.observed_order {
-        order if order.is_nan() => "no order observed".to_string(),
-        order => format!("order {order:.2}"),
-    };
-    let finding = match refinement.finest_error {
-        error if error.is_nan() => "one mesh alone tells no discretisation error".to_string(),
-        error => {
-            let verdict = if refinement.agrees { "agree" } else { "DISAGREE" };
-            format!("{order}, finest mesh {:.2} % off the continuous truth, surface means {verdict}", 100.0 * error)
-        }
-    };
-    text += &format!("\nmatrix against path tracer: {finding}\n");
-    text + &format!("\n{}\n", folder.join("report.html").display())
 }

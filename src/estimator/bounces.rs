@@ -1,5 +1,6 @@
 //! Which bounces of light are scored, and where.
 
+use crate::linalg::Block;
 use std::ops::Range;
 
 /// Bounce k is KᵏE: light that was scattered k times since it was emitted, the last time into the bundle that is scored.
@@ -48,6 +49,12 @@ impl Columns {
         }
         let first = if matches!(self.bounces, Bounces::Each(_)) { bounce * self.n_bands } else { 0 };
         Some(first..first + self.n_bands)
+    }
+
+    /// What bounce 0 alone comes to, n × columns.
+    pub fn first(self, emission: &Block) -> Block {
+        let value = |i, c| if c < self.n_bands { emission.get(i, c) } else { 0.0 };
+        Block::from_fn(emission.n_rows(), self.count(), value)
     }
 
     /// True if neither this bounce nor a later one counts.

@@ -15,6 +15,8 @@ pub struct Estimate {
     pub seed: u64,
     /// Samples a start.
     pub n_samples: u64,
+    /// Steps that all samples took together, of walks or rays; 0 for an estimator that does not count them.
+    pub n_steps: u64,
     /// Which samples: disjoint, ascending.
     pub samples: Vec<Range<u64>>,
     /// n × bands, W m⁻² sr⁻¹.
@@ -67,7 +69,7 @@ impl Estimate {
         // Move each mean towards the other's by its share, and count how far apart they were as spread.
         let n_samples = self.n_samples + other.n_samples;
         let share = if n_samples == 0 { 0.0 } else { other.n_samples as f64 / n_samples as f64 };
-        let mut merged = Self { n_samples, samples, ..self.clone() };
+        let mut merged = Self { n_samples, n_steps: self.n_steps + other.n_steps, samples, ..self.clone() };
         for (k, (theirs, variance)) in other.mean.values().iter().zip(other.variance_of_mean.values()).enumerate() {
             let (mine, apart) = (self.mean.values()[k], theirs - self.mean.values()[k]);
             let squared_deviations = squared_deviations(self.variance_of_mean.values()[k], self.n_samples)
@@ -105,6 +107,7 @@ impl Estimate {
             truth: estimator.truth(),
             seed,
             n_samples: 0,
+            n_steps: 0,
             samples: Vec::new(),
             mean: Block::zeros(n, n_columns),
             variance_of_mean: Block::from_fn(n, n_columns, |_, _| f64::NAN),

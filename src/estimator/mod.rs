@@ -16,11 +16,16 @@ mod walks;
 pub use bounces::Bounces;
 pub use error::EstimatorError;
 pub use estimate::{Estimate, MergeError, WeightedMean};
-pub use paths::PathTracer;
+pub use paths::{Bidirectional, Heuristic, Kernel, LightTracer, PathTracer, PhotonDensity, Roulette, Sampling};
 pub use run::{estimate, estimate_range, estimate_watched};
 pub use score::Score;
-pub use walks::{MatrixWalk, Scoring};
+pub use walks::{
+    GuidedWalk, LevelReport, MatrixWalk, MeasuringWalk, Multilevel, MultilevelEstimate, NestingError, OracleError,
+    Order, Prediction, QuasiWalk, Scoring, Sequential, SequentialEstimate, SequentialStop, ShootingWalk, Stage,
+    StochasticJacobi,
+};
 
+use crate::linalg::Block;
 use crate::sampling::{Stream, Streams};
 use std::fmt;
 use std::ops::Range;
@@ -32,6 +37,8 @@ pub enum Truth {
     Discrete,
     /// The scene's own radiance, averaged over the étendue of every bundle.
     Continuous,
+    /// The scene's own radiance smoothed by the kernel of a density estimate, and so biased by its width; or that bias itself.
+    Smoothed,
 }
 
 impl fmt::Display for Truth {
@@ -39,6 +46,7 @@ impl fmt::Display for Truth {
         f.write_str(match self {
             Self::Discrete => "discrete",
             Self::Continuous => "continuous",
+            Self::Smoothed => "smoothed",
         })
     }
 }
@@ -67,6 +75,17 @@ pub trait Estimator: Sync {
     /// The bundles that samples from this start may score.
     fn reach(&self, start: usize) -> Range<usize> {
         start..start + 1
+    }
+
+    /// Consecutive samples of one start that one thread draws: many enough that setting up and merging moments of its reach is little against
+    /// drawing them, and no function of the threads.
+    fn samples_a_task(&self) -> u64 {
+        1024
+    }
+
+    /// What is added to the means without being sampled, n × columns, where something is: the samples' expectation is the rest.
+    fn known(&self) -> Option<&Block> {
+        None
     }
 
     /// Adds one sample to the score. For every bundle in reach, the expectation of what is added is its radiance; bundles to which

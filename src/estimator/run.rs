@@ -11,9 +11,6 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Samples that one task draws from its start.
-const SAMPLES_A_TASK: u64 = 1024;
-
 /// Tasks drawn between two merges, or one a start where there are more starts: bounds the moments held at once.
 const TASKS_A_WAVE: usize = 32;
 
@@ -48,27 +45,29 @@ pub fn estimate_watched(
 
     // Draw some chunks of samples from all starts at a time.
     let n_samples = samples.end - samples.start;
-    let n_chunks = n_samples.div_ceil(SAMPLES_A_TASK);
+    let samples_a_task = estimator.samples_a_task().max(1);
+    let n_chunks = n_samples.div_ceil(samples_a_task);
     let n_tasks = n_chunks.saturating_mul(n_starts as u64);
     let chunks_a_wave = TASKS_A_WAVE.div_ceil(n_starts) as u64;
     let done = AtomicU64::new(0);
     for first_chunk in (0..n_chunks).step_by(chunks_a_wave as usize) {
         let n_chunks_here = chunks_a_wave.min(n_chunks - first_chunk) as usize;
-        let wave: Vec<Vec<Moments>> = (0..n_chunks_here * n_starts)
+        let wave: Vec<(u64, Vec<Moments>)> = (0..n_chunks_here * n_starts)
             .into_par_iter()
             .map(|task| {
-                let begin = samples.start + (first_chunk + (task / n_starts) as u64) * SAMPLES_A_TASK;
-                let end = samples.end.min(begin.saturating_add(SAMPLES_A_TASK));
+                let begin = samples.start + (first_chunk + (task / n_starts) as u64) * samples_a_task;
+                let end = samples.end.min(begin.saturating_add(samples_a_task));
                 let start = task % n_starts;
                 let mut score = Score::new(estimator.reach(start), n_columns);
                 estimator.samples(start, begin..end, &streams, &mut score);
                 progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / n_tasks as f64);
-                score.into_moments()
+                (score.n_steps(), score.into_moments())
             })
             .collect();
 
         // Merge them in order.
-        for (task, drawn) in wave.iter().enumerate() {
+        for (task, (n_steps, drawn)) in wave.iter().enumerate() {
+            estimate.n_steps += n_steps;
             let reach = estimator.reach(task % n_starts);
             let merged = &mut moments[reach.start * n_columns..reach.end * n_columns];
             merged.iter_mut().zip(drawn).for_each(|(merged, drawn)| merged.merge(drawn));
@@ -80,6 +79,9 @@ pub fn estimate_watched(
     for (k, moments) in moments.iter().enumerate() {
         estimate.mean.set(k / n_columns, k % n_columns, moments.mean());
         estimate.variance_of_mean.set(k / n_columns, k % n_columns, moments.variance_of_mean());
+    }
+    if let Some(known) = estimator.known() {
+        estimate.mean.add_scaled(1.0, known);
     }
     estimate
 }

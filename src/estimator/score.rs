@@ -16,6 +16,7 @@ pub struct Score {
     /// Moments of the samples that have ended, likewise.
     moments: Vec<Moments>,
     n_samples: u64,
+    n_steps: u64,
     is_touched: Vec<bool>,
     /// The bundles that the sample has scored, counted from `first`.
     touched: Vec<usize>,
@@ -30,6 +31,7 @@ impl Score {
             totals: vec![0.0; n_bundles * n_columns],
             moments: vec![Moments::default(); n_bundles * n_columns],
             n_samples: 0,
+            n_steps: 0,
             is_touched: vec![false; n_bundles],
             touched: Vec::new(),
         }
@@ -58,6 +60,12 @@ impl Score {
         &mut self.totals[local * self.n_columns..][..self.n_columns]
     }
 
+    /// Counts what samples cost: steps of a walk, rays of a path.
+    #[inline]
+    pub fn count_steps(&mut self, n_steps: u64) {
+        self.n_steps += n_steps;
+    }
+
     /// Ends one sample: its totals become numbers to average, and start again from zero.
     #[inline]
     pub fn end_sample(&mut self) {
@@ -70,6 +78,10 @@ impl Score {
                 *total = 0.0;
             }
         }
+    }
+
+    pub(super) fn n_steps(&self) -> u64 {
+        self.n_steps
     }
 
     /// The moments of all samples that have ended, those counted as zero that did not score a bundle.

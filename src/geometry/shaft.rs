@@ -106,13 +106,7 @@ impl<'a> Hull<'a> {
     }
 
     fn classify(&self, tracer: &Tracer, mut inside: Vec<u32>) -> Shaft {
-        if !inside.is_empty() {
-            let sides = side_planes(self.a, self.b, rounding(self.low, self.high));
-            let outside = |occluder: &[Vec3], (normal, point): &(Vec3, Vec3)| {
-                occluder.iter().all(|v| normal.dot(*v - *point) >= 0.0 || height(*normal, *point, *v) >= 0.0)
-            };
-            inside.retain(|&handle| !sides.iter().any(|plane| outside(tracer.corners_of(handle), plane)));
-        }
+        self.drop_beside(tracer, &mut inside);
         if inside.is_empty() {
             return Shaft::Clear;
         }
@@ -133,6 +127,25 @@ impl<'a> Hull<'a> {
             }
         }
         Shaft::Undecided(inside)
+    }
+
+    /// Drops those beyond a plane that bounds the hull from the side.
+    fn drop_beside(&self, tracer: &Tracer, inside: &mut Vec<u32>) {
+        let rounding = rounding(self.low, self.high);
+        let mut keep_inside = |(normal, point): (Vec3, Vec3)| {
+            let outside = |v: &Vec3| normal.dot(*v - point) >= 0.0 || height(normal, point, *v) >= 0.0;
+            inside.retain(|&handle| !tracer.corners_of(handle).iter().all(outside));
+            inside.is_empty()
+        };
+        let is_above = |one: &Polygon, other: &Polygon| {
+            let height = |v: &Vec3| height_above(other.normal(), other.centroid(), *v, rounding);
+            one.vertices().iter().all(|v| height(v) >= 0.0)
+        };
+        if is_above(self.a, self.b) && is_above(self.b, self.a) {
+            let _ = tangent_planes(self.a, self.b).chain(tangent_planes(self.b, self.a)).any(&mut keep_inside);
+        } else {
+            let _ = side_planes(self.a, self.b, rounding).into_iter().any(&mut keep_inside);
+        }
     }
 
     /// False only if some line between corners of the two surely meets none of the facets of a plane: most planes do not cut the hull in
@@ -182,6 +195,31 @@ fn rounding(low: Vec3, high: Vec3) -> f64 {
 fn height_above(normal: Vec3, on_plane: Vec3, point: Vec3, rounding: f64) -> f64 {
     let above = normal.dot(point - on_plane);
     if above.abs() > rounding { above } else { height(normal, on_plane, point) }
+}
+
+/// The planes through an edge of a polygon and a corner of another in front of it with no corner of either above: outward normal and a point
+/// of each.
+fn tangent_planes<'a>(one: &'a Polygon, other: &'a Polygon) -> impl Iterator<Item = (Vec3, Vec3)> + 'a {
+    let v = one.vertices();
+    (0..v.len()).filter_map(move |k| {
+        // Among the corners as seen along the edge, find the one furthest about it from the inside of the polygon. A corner so near the edge
+        // that rounding turns it may win by that, and then the plane stands off; or lose, and then it is above by no more than rounding.
+        let (start, edge) = (v[k], v[(k + 1) % v.len()] - v[k]);
+        let inward = one.normal().cross(edge);
+        let mut furthest = (0.0, 0.0);
+        for corner in other.vertices() {
+            let offset = *corner - start;
+            let (along, up) = (inward.dot(offset), one.normal().dot(offset).max(0.0));
+            let turn = furthest.0 * up - furthest.1 * along;
+            let is_opposite = turn == 0.0 && along < 0.0 && furthest.0 > 0.0;
+            if furthest == (0.0, 0.0) || turn > 0.0 || is_opposite {
+                furthest = (along, up);
+            }
+        }
+        let (along, up) = furthest;
+        let normal = (along * one.normal() - up * inward).try_normalize()?;
+        Some((normal, start))
+    })
 }
 
 /// The planes that bound the hull of two polygons from the side, outward normal and a point of each: those through an edge of one

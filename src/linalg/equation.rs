@@ -63,14 +63,6 @@ impl<'a> Equation<'a> {
     pub fn n_bands(&self) -> usize {
         self.emission.n_columns()
     }
-
-    /// out ← E + K x − x, the residual of x. One product with K.
-    pub fn residual(&self, x: &Block, out: &mut Block) {
-        self.transport.apply(x, out);
-        for ((r, e), l) in out.values_mut().iter_mut().zip(self.emission.values()).zip(x.values()) {
-            *r += e - l;
-        }
-    }
 }
 
 impl SelfAdjoint<'_> {

@@ -8,7 +8,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::{cholesky::llt, lu::partial_pivoting as lu};
 use faer::perm::PermRef;
 use faer::prelude::default;
-use faer::{Conj, Mat, MatMut, MatRef, Par};
+use faer::{Conj, Mat, MatMut, Par};
 use thiserror::Error;
 
 /// Parts that a factorization is split into, on any number of threads.
@@ -56,6 +56,25 @@ pub(super) fn check_finite(a: &Dense) -> Result<(), FactorError> {
     }
 }
 
+/// Rows and columns of the tiles that a matrix is turned in, so that both ways of going through it stay in the cache.
+const TILE: usize = 16;
+
+/// A matrix by rows as faer's by columns, its entries as they are stored there; if so wanted, of the tiles above the diagonal only zeros.
+pub(super) fn by_columns<T: Copy + Default>(a: &Dense, is_lower: bool, store: impl Fn(f64) -> T) -> Mat<T> {
+    let n = a.n_rows();
+    let mut matrix = Mat::from_fn(n, n, |_, _| T::default());
+    for first in (0..n).step_by(TILE) {
+        for top in (if is_lower { first } else { 0 }..n).step_by(TILE) {
+            let rows = top..(top + TILE).min(n);
+            for c in first..(first + TILE).min(n) {
+                let column = &mut matrix.col_as_slice_mut(c)[rows.clone()];
+                column.iter_mut().zip(rows.clone()).for_each(|(v, r)| *v = store(a.get(r, c)));
+            }
+        }
+    }
+    matrix
+}
+
 /// The block as faer's matrix.
 pub(super) fn view(block: &mut Block) -> MatMut<'_, f64> {
     let (n, m) = (block.n_rows(), block.n_columns());
@@ -75,8 +94,7 @@ impl LuFactor {
     pub fn new(a: &Dense) -> Result<Self, FactorError> {
         check_finite(a)?;
         let n = a.n_rows();
-        let mut factors = Mat::zeros(n, n);
-        factors.copy_from(MatRef::from_row_major_slice(a.values(), n, n));
+        let mut factors = by_columns(a, false, |v| v);
         let (mut forward, mut backward) = (vec![0; n], vec![0; n]);
         let parallel = Par::rayon(DEGREE);
         let scratch = lu::factor::lu_in_place_scratch::<usize, f64>(n, n, parallel, default());
@@ -139,8 +157,7 @@ impl CholeskyFactor {
     pub fn new(a: &Dense) -> Result<Self, FactorError> {
         check_finite(a)?;
         let n = a.n_rows();
-        let mut factor = Mat::zeros(n, n);
-        factor.copy_from_triangular_lower(MatRef::from_row_major_slice(a.values(), n, n));
+        let mut factor = by_columns(a, true, |v| v);
         let parallel = Par::rayon(DEGREE);
         let scratch = llt::factor::cholesky_in_place_scratch::<f64>(n, parallel, default());
         llt::factor::cholesky_in_place(

@@ -1,6 +1,6 @@
 //! LU in single precision: half the room and half the time, and seven digits.
 
-use super::factor::check_finite;
+use super::factor::{by_columns, check_finite};
 use super::{Dense, FactorError, LinearOperator};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting as lu;
@@ -27,7 +27,7 @@ impl SingleLuFactor {
     pub fn new(a: &Dense) -> Result<Self, FactorError> {
         check_finite(a)?;
         let n = a.n_rows();
-        let mut factors = Mat::from_fn(n, n, |r, c| a.get(r, c) as f32);
+        let mut factors = by_columns(a, false, |v| v as f32);
         let (mut forward, mut backward) = (vec![0; n], vec![0; n]);
         let parallel = Par::rayon(DEGREE);
         let scratch = lu::factor::lu_in_place_scratch::<usize, f32>(n, n, parallel, default());

@@ -28,14 +28,19 @@ impl Sparse {
 
     /// The nonzeros of one band of any operator.
     pub fn from_operator(operator: &dyn LinearOperator, band: usize) -> Self {
-        let row = |r| {
-            let mut full = vec![0.0; operator.n_columns()];
-            operator.row(band, r, &mut full);
+        Self::from_row_fn(operator.n_rows(), operator.n_columns(), |r, out| operator.row(band, r, out))
+    }
+
+    /// The nonzeros of rows that are written out one at a time and a thread: `write(row, out)` has `out` as it left it.
+    pub fn from_row_fn(n_rows: usize, n_columns: usize, write: impl Fn(usize, &mut [f64]) + Sync) -> Self {
+        let room = || vec![0.0; n_columns];
+        let row = |full: &mut Vec<f64>, r: usize| {
+            write(r, full);
             let nonzero = full.iter().enumerate().filter(|(_, v)| **v != 0.0);
             nonzero.map(|(c, v)| (c as u32, *v)).collect::<Vec<_>>()
         };
-        let rows: Vec<_> = (0..operator.n_rows()).into_par_iter().map(row).collect();
-        Self::from_rows(operator.n_columns(), &rows)
+        let rows: Vec<_> = (0..n_rows).into_par_iter().map_init(room, row).collect();
+        Self::from_rows(n_columns, &rows)
     }
 
     /// The `sprs` matrix itself.

@@ -1,21 +1,22 @@
 //! The numbers behind the figures and tables, as CSV.
 
 use super::csv::{Csv, Field};
-use crate::study::{BandSpectrum, EstimatorRun, Refinement, SolverRun, Truncation};
+use crate::study::{AlbedoStudy, BandSpectrum, EstimatorRun, Refinement, SolverRun, Truncation};
 
-/// solver, iteration, products, residual, error: one row an iteration.
+/// One row an iteration; what was not predicted is empty.
 pub fn convergence(solvers: &[SolverRun]) -> Vec<u8> {
-    let mut csv = Csv::new(&["solver", "iteration", "products", "residual", "error"]);
+    let mut csv = Csv::new(&["solver", "iteration", "products", "seconds", "residual", "error", "predicted_error"]);
     for run in solvers {
         for (i, p) in run.history.iter().enumerate() {
-            let [products, residual, error] = [p.products, p.residual, p.error].map(Field::Number);
-            csv.row(&[Field::Text(&run.solver), Field::Count(i as u64), products, residual, error]);
+            let [products, seconds, residual, error] = [p.products, p.seconds, p.residual, p.error].map(Field::Number);
+            let predicted = p.predicted.map_or(Field::Text(""), Field::Number);
+            csv.row(&[Field::Text(&run.solver), Field::Count(i as u64), products, seconds, residual, error, predicted]);
         }
     }
     csv.into_bytes()
 }
 
-/// One row a solver; an absent bound is empty.
+/// One row a solver; an absent bound, and what a method that refused has none of, is empty.
 pub fn solvers(solvers: &[SolverRun]) -> Vec<u8> {
     let mut csv = Csv::new(&[
         "solver",
@@ -28,8 +29,12 @@ pub fn solvers(solvers: &[SolverRun]) -> Vec<u8> {
         "true_residual",
         "error",
         "error_bound",
+        "adjoint_products",
+        "adjoint_seconds",
+        "duality_difference",
     ]);
     for run in solvers {
+        let optional = |value: Option<f64>| value.map_or(Field::Text(""), Field::Number);
         csv.row(&[
             Field::Text(&run.solver),
             Field::Text(&run.kind),
@@ -40,8 +45,33 @@ pub fn solvers(solvers: &[SolverRun]) -> Vec<u8> {
             Field::Number(run.seconds),
             Field::Number(run.true_residual),
             Field::Number(run.error),
-            run.error_bound.map_or(Field::Text(""), Field::Number),
+            optional(run.error_bound),
+            optional(run.adjoint.as_ref().map(|adjoint| adjoint.products)),
+            optional(run.adjoint.as_ref().map(|adjoint| adjoint.seconds)),
+            optional(run.adjoint.as_ref().map(|adjoint| adjoint.difference)),
         ]);
+    }
+    csv.into_bytes()
+}
+
+/// One row a method and albedo.
+pub fn albedos(study: &AlbedoStudy) -> Vec<u8> {
+    let mut csv = Csv::new(&["albedo", "solver", "kind", "stop", "products", "seconds", "true_residual", "error"]);
+    for level in &study.levels {
+        for run in &level.runs {
+            let [products, seconds, residual, error] =
+                [run.products, run.seconds, run.true_residual, run.error].map(Field::Number);
+            csv.row(&[
+                Field::Number(level.albedo),
+                Field::Text(&run.solver),
+                Field::Text(&run.kind),
+                Field::Text(&run.stop),
+                products,
+                seconds,
+                residual,
+                error,
+            ]);
+        }
     }
     csv.into_bytes()
 }

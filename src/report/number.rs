@@ -28,13 +28,15 @@ pub fn scientific(value: f64, digits: usize) -> String {
     format!("{mantissa}×10{}", superscript(exponent))
 }
 
-/// As [`significant`], without zeros at the end: 0.05, 0.1, 12.
+/// As [`significant`], without zeros at the end: 0.05, 0.1, 12, 2×10⁻⁶, and 10⁻⁶ for 1×10⁻⁶.
 pub fn trimmed(value: f64, digits: usize) -> String {
     let text = significant(value, digits);
-    if text.contains('×') || !text.contains('.') {
-        text
-    } else {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    let (mantissa, power) = text.split_once('×').map_or((&text[..], ""), |(mantissa, power)| (mantissa, power));
+    let mantissa = if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
+    match (mantissa, power) {
+        (mantissa, "") => mantissa.to_owned(),
+        ("1", power) => power.to_owned(),
+        (mantissa, power) => format!("{mantissa}×{power}"),
     }
 }
 
@@ -132,6 +134,8 @@ mod tests {
         assert_eq!(significant(f64::NEG_INFINITY, 3), "−∞");
         assert_eq!(trimmed(0.05, 3), "0.05");
         assert_eq!(trimmed(100.0, 3), "100");
+        assert_eq!(trimmed(1e-6, 3), "10⁻⁶");
+        assert_eq!(trimmed(2.5e-6, 3), "2.5×10⁻⁶");
         assert_eq!(products(12_345.0), "12\u{202f}345");
         assert_eq!(products(22.875), "22.9");
         assert_eq!(products(1376.4), "1\u{202f}376");

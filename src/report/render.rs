@@ -1,7 +1,7 @@
 //! From an outcome to all files of its report.
 
-use super::figure::{Sheet, convergence, monte_carlo, refinement, spectrum, to_png, to_svg, truncation};
-use super::page::{FigureOnPage, page};
+use super::figure::{Sheet, albedos, convergence, monte_carlo, refinement, spectrum, to_png, to_svg, truncation};
+use super::page::{FigureOnPage, FiguresOnPage, page};
 use super::picture::pictures;
 use super::{Artifact, ReportError, SCHEMA, data};
 use crate::study::{SpectrumOutcome, StudyOutcome};
@@ -33,6 +33,11 @@ pub fn render(outcome: &StudyOutcome) -> Result<Vec<Artifact>, ReportError> {
     let refinement =
         draw(&mut files, "refinement", refinement(&outcome.refinement), data::refinement(&outcome.refinement))?;
 
+    let albedos = match &outcome.albedos {
+        Some(study) => Some(draw(&mut files, "albedos", albedos(study), data::albedos(study))?),
+        None => None,
+    };
+
     // Write the tables.
     files.push(Artifact { name: "solvers.csv".into(), bytes: data::solvers(&outcome.solvers) });
     files.push(Artifact { name: "surfaces.csv".into(), bytes: data::surfaces(&outcome.refinement) });
@@ -46,7 +51,7 @@ pub fn render(outcome: &StudyOutcome) -> Result<Vec<Artifact>, ReportError> {
     }
 
     // Compose the page, and list everything in report.json.
-    let figures = [convergence, truncation, monte_carlo, refinement];
+    let figures = FiguresOnPage { convergence, albedos, truncation, monte_carlo, refinement };
     let html = page(outcome, &figures, shown.as_ref(), &files);
     files.insert(0, Artifact { name: "report.html".into(), bytes: html.into_bytes() });
     let names = files.iter().map(|file| file.name.as_str()).collect();

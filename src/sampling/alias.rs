@@ -36,6 +36,27 @@ struct Slot {
     alias: u32,
 }
 
+/// A slot that was drawn, and where in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Draw {
+    slot: Slot,
+    part: f64,
+}
+
+impl Draw {
+    /// The column; `None` where the row absorbs.
+    #[inline]
+    pub fn column(self) -> Option<usize> {
+        let outcome = self.outcome();
+        (outcome != ABSORBED).then_some(outcome as usize)
+    }
+
+    #[inline]
+    fn outcome(self) -> u32 {
+        if self.part < self.slot.threshold { self.slot.here } else { self.slot.alias }
+    }
+}
+
 /// One distribution over 0 … n − 1, proportional to its weights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AliasTable {
@@ -124,8 +145,14 @@ impl AliasRows {
     /// A column from one number uniform in [0, 1); `None` where the row absorbs. Cost O(1), one cache line.
     #[inline]
     pub fn sample(&self, row: usize, uniform: f64) -> Option<usize> {
-        let outcome = draw(&self.slots[self.starts[row]..self.starts[row + 1]], uniform);
-        (outcome != ABSORBED).then_some(outcome as usize)
+        self.fetch(row, uniform).column()
+    }
+
+    /// The first half of [`AliasRows::sample`]: reads memory and decides nothing. A thread that fetches many draws before it looks at the first
+    /// waits for memory once, not once for each.
+    #[inline]
+    pub fn fetch(&self, row: usize, uniform: f64) -> Draw {
+        fetch(&self.slots[self.starts[row]..self.starts[row + 1]], uniform)
     }
 
     /// The probability of each column of a row as the table has it; the rest is absorbed.
@@ -135,11 +162,15 @@ impl AliasRows {
 }
 
 #[inline]
-fn draw(slots: &[Slot], uniform: f64) -> u32 {
+fn fetch(slots: &[Slot], uniform: f64) -> Draw {
     let scaled = uniform * slots.len() as f64;
     let k = (scaled as usize).min(slots.len() - 1);
-    let slot = slots[k];
-    if scaled - (k as f64) < slot.threshold { slot.here } else { slot.alias }
+    Draw { slot: slots[k], part: scaled - k as f64 }
+}
+
+#[inline]
+fn draw(slots: &[Slot], uniform: f64) -> u32 {
+    fetch(slots, uniform).outcome()
 }
 
 /// Sums each outcome's shares of its slots, absorption left out.

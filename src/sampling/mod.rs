@@ -4,12 +4,18 @@
 //! the next function, so that a sample can be drawn from a random stream or from a low-discrepancy point alike.
 
 mod alias;
+mod cumulative;
+mod directions;
 mod kronecker;
+mod padded;
 mod sobol;
 mod stream;
 pub mod warp;
 
-pub use alias::{AliasError, AliasRows, AliasTable, ROW_SUM_TOLERANCE};
+pub use alias::{AliasError, AliasRows, AliasTable, Draw, ROW_SUM_TOLERANCE};
+pub use cumulative::CumulativeRows;
+pub use directions::N_SOBOL_DIMENSIONS;
 pub use kronecker::{Kronecker, mix};
-pub use sobol::{N_SOBOL_DIMENSIONS, Sobol};
+pub use padded::PaddedSobol;
+pub use sobol::Sobol;
 pub use stream::{Stream, Streams, mix_seed};

@@ -1,29 +1,9 @@
 //! Sobol' points, Owen-scrambled: low-discrepancy points that are also random, hence unbiased and with a measurable error.
 
+use super::directions::{DIRECTIONS, N_SOBOL_DIMENSIONS};
 use super::stream::{mix_seed, unit_interval};
 
-/// Dimensions there are direction numbers for.
-pub const N_SOBOL_DIMENSIONS: usize = 8;
-
-/// Digits of an index and of a coordinate.
-const N_BITS: usize = 64;
-
-/// (degree, inner coefficients of the primitive polynomial over GF(2), first direction numbers), from the second dimension on;
-/// the values of Joe & Kuo 2008 (table new-joe-kuo-6), chosen there for good two-dimensional projections.
-const POLYNOMIALS: [(usize, u64, [u64; 5]); N_SOBOL_DIMENSIONS - 1] = [
-    (1, 0, [1, 0, 0, 0, 0]),
-    (2, 1, [1, 3, 0, 0, 0]),
-    (3, 1, [1, 3, 1, 0, 0]),
-    (3, 2, [1, 1, 1, 0, 0]),
-    (4, 1, [1, 1, 3, 3, 0]),
-    (4, 4, [1, 3, 5, 13, 0]),
-    (5, 2, [1, 1, 5, 5, 17]),
-];
-
-/// Column k of dimension d's generating matrix, most significant digit first.
-const DIRECTIONS: [[u64; N_BITS]; N_SOBOL_DIMENSIONS] = directions();
-
-/// The Sobol' sequence in `D` ≤ 8 dimensions, each scrambled by its own random nested permutation of digits.
+/// The Sobol' sequence in `D` ≤ 32 dimensions, each scrambled by its own random nested permutation of digits.
 ///
 /// The first 2ᵏ points put exactly one into each interval of length 2⁻ᵏ of every dimension, and dimensions 0 and 1 form a
 /// (0, 2)-sequence; scrambling keeps both. Every point is uniform in the cube, and different seeds are independent: the spread of an
@@ -37,7 +17,7 @@ pub struct Sobol<const D: usize> {
 }
 
 impl<const D: usize> Sobol<D> {
-    const FITS: () = assert!(D <= N_SOBOL_DIMENSIONS, "there are direction numbers for eight dimensions");
+    const FITS: () = assert!(D <= N_SOBOL_DIMENSIONS, "there are direction numbers for 32 dimensions; pad beyond");
 
     /// The sequence of this seed. For one sequence a task, mix the task's number in with [`mix_seed`].
     pub fn new(seed: u64) -> Self {
@@ -52,7 +32,7 @@ impl<const D: usize> Sobol<D> {
 }
 
 /// Digits of the unscrambled coordinate.
-fn sobol(dimension: usize, index: u64) -> u64 {
+pub(super) fn sobol(dimension: usize, index: u64) -> u64 {
     let mut remaining = index;
     let mut digits = 0;
     while remaining != 0 {
@@ -64,7 +44,7 @@ fn sobol(dimension: usize, index: u64) -> u64 {
 
 /// A random permutation of 64-digit numbers that keeps every dyadic interval together: digit k is flipped by a hash of the digits
 /// above it alone.
-fn scramble(digits: u64, seed: u64) -> u64 {
+pub(super) fn scramble(digits: u64, seed: u64) -> u64 {
     // Turn the digits round, so that 'above' becomes 'below', the only way in which sums and products carry.
     let mut x = digits.reverse_bits();
     x = x.wrapping_add(seed);
@@ -76,39 +56,6 @@ fn scramble(digits: u64, seed: u64) -> u64 {
     x = x.wrapping_mul(0xd6e8_feb8_6659_fd93);
     x ^= x.wrapping_mul(0xa076_1d64_78bd_642e);
     x.reverse_bits()
-}
-
-/// The direction numbers by the recurrence of each primitive polynomial (Bratley & Fox 1988); the first dimension is van der Corput's.
-const fn directions() -> [[u64; N_BITS]; N_SOBOL_DIMENSIONS] {
-    let mut all = [[0; N_BITS]; N_SOBOL_DIMENSIONS];
-    let mut k = 0;
-    while k < N_BITS {
-        all[0][k] = 1 << (N_BITS - 1 - k);
-        k += 1;
-    }
-    let mut dimension = 1;
-    while dimension < N_SOBOL_DIMENSIONS {
-        let (degree, coefficients, first) = POLYNOMIALS[dimension - 1];
-        let mut k = 0;
-        while k < N_BITS {
-            all[dimension][k] = if k < degree {
-                first[k] << (N_BITS - 1 - k)
-            } else {
-                let mut v = all[dimension][k - degree] ^ (all[dimension][k - degree] >> degree);
-                let mut j = 1;
-                while j < degree {
-                    if (coefficients >> (degree - 1 - j)) & 1 == 1 {
-                        v ^= all[dimension][k - j];
-                    }
-                    j += 1;
-                }
-                v
-            };
-            k += 1;
-        }
-        dimension += 1;
-    }
-    all
 }
 
 #[cfg(test)]
@@ -123,15 +70,6 @@ mod tests {
         assert_eq!([1, 2, 3].map(|i| value(1, i)), [0.5, 0.75, 0.25]);
         assert_eq!([1, 2, 3].map(|i| value(2, i)), [0.5, 0.75, 0.25]);
         assert_eq!([4, 5, 6, 7].map(|i| value(1, i)), [0.625, 0.125, 0.375, 0.875]);
-    }
-
-    #[test]
-    fn generating_matrices_are_unit_upper_triangular() {
-        for columns in DIRECTIONS {
-            for (k, column) in columns.iter().enumerate() {
-                assert_eq!(column.trailing_zeros() as usize, N_BITS - 1 - k);
-            }
-        }
     }
 
     #[test]

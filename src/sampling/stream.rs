@@ -1,6 +1,6 @@
 //! Random streams that are keyed, not advanced: any draw can be had again without the draws before it.
 
-use rand_philox::{Philox, splitmix64};
+use rand_philox::{philox4x32_10, splitmix64};
 
 /// 2⁶⁴ over the golden ratio, made odd: keeps a zero seed away from the fixed point of `splitmix64`.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -29,17 +29,23 @@ impl Streams {
     /// Cost: nothing until the first draw.
     #[inline]
     pub fn stream(&self, start: u32, sample: u64) -> Stream {
-        Stream { philox: Philox::new(self.key, u128::from(start) << 96 | u128::from(sample) << 32) }
+        Stream { key: self.key, start, sample, n_blocks: 0, spare: None }
     }
 }
 
 /// One stream of uniform numbers: Philox4x32-10 (Salmon et al. 2011), a function of (seed, purpose, start, sample) and of how many
 /// numbers were drawn, so results do not depend on threads or on order.
 ///
-/// Holds 2³² blocks of two numbers each; a longer one would run into the stream of the next sample.
+/// Holds 2³² blocks of two numbers each; a longer one would begin again.
 #[derive(Clone, Debug)]
 pub struct Stream {
-    philox: Philox,
+    key: [u32; 2],
+    start: u32,
+    sample: u64,
+    /// Blocks drawn.
+    n_blocks: u32,
+    /// The second half of the last block, if it is to be used.
+    spare: Option<u64>,
 }
 
 impl Stream {
@@ -51,7 +57,12 @@ impl Stream {
     /// 64 random bits.
     #[inline]
     pub fn bits(&mut self) -> u64 {
-        self.philox.next_u64()
+        if let Some(bits) = self.spare.take() {
+            return bits;
+        }
+        let [first, second] = self.block();
+        self.spare = Some(second);
+        first
     }
 
     /// Uniform in [0, 1), a multiple of 2⁻⁵³.
@@ -63,7 +74,30 @@ impl Stream {
     /// Two numbers uniform in [0, 1): one block of the generator, where an even number was drawn before.
     #[inline]
     pub fn uniform2(&mut self) -> [f64; 2] {
-        [self.uniform(), self.uniform()]
+        if self.spare.is_some() {
+            return [self.uniform(), self.uniform()];
+        }
+        self.block().map(unit_interval)
+    }
+
+    /// Three numbers uniform in [0, 1), multiples of 2⁻⁴²: one block of the generator, for what is drawn often and needs no more digits. Half a
+    /// block that [`Stream::uniform`] may have left over is dropped.
+    #[inline]
+    pub fn uniform3(&mut self) -> [f64; 3] {
+        const SCALE: f64 = 1.0 / (1u64 << 42) as f64;
+        self.spare = None;
+        let [first, second] = self.block();
+        let third = (first & 0x3f_ffff) << 20 | second & 0xf_ffff;
+        [(first >> 22) as f64 * SCALE, (second >> 22) as f64 * SCALE, third as f64 * SCALE]
+    }
+
+    /// The next 128 bits.
+    #[inline]
+    fn block(&mut self) -> [u64; 2] {
+        let counter = [self.n_blocks, self.sample as u32, (self.sample >> 32) as u32, self.start];
+        self.n_blocks = self.n_blocks.wrapping_add(1);
+        let [a, b, c, d] = philox4x32_10(counter, self.key).map(u64::from);
+        [a | b << 32, c | d << 32]
     }
 }
 

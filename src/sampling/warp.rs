@@ -7,8 +7,22 @@ use std::f64::consts::{FRAC_1_PI, FRAC_PI_4, PI, TAU};
 
 /// A point of the unit disk, uniform by area; neighbours stay neighbours (Shirley & Chiu 1997), which keeps stratification.
 pub fn disk(uniform: [f64; 2]) -> [f64; 2] {
-    let (radius, angle) = concentric(uniform);
-    [radius * angle.cos(), radius * angle.sin()]
+    let (_, point) = concentric(uniform);
+    point
+}
+
+/// The numbers that [`disk`] warps to a point of the unit disk, to rounding.
+pub fn disk_inverse(point: [f64; 2]) -> [f64; 2] {
+    let [x, y] = point;
+    let radius = x.hypot(y);
+    let (a, b) = if x.abs() > y.abs() {
+        (radius.copysign(x), radius.copysign(x) * ((y / x).atan() / FRAC_PI_4))
+    } else if y != 0.0 {
+        (radius.copysign(y) * ((x / y).atan() / FRAC_PI_4), radius.copysign(y))
+    } else {
+        (0.0, 0.0)
+    };
+    [0.5 * (a + 1.0), 0.5 * (b + 1.0)]
 }
 
 /// 1/π inside the unit disk.
@@ -20,8 +34,8 @@ pub fn disk_pdf(point: [f64; 2]) -> f64 {
 ///
 /// The horizon itself (cosθ = 0) comes up only for numbers that are exactly 0, with probability 2⁻⁵².
 pub fn cosine_hemisphere(uniform: [f64; 2]) -> [f64; 3] {
-    let (radius, angle) = concentric(uniform);
-    [radius * angle.cos(), radius * angle.sin(), ((1.0 - radius) * (1.0 + radius)).sqrt()]
+    let (radius, [x, y]) = concentric(uniform);
+    [x, y, ((1.0 - radius) * (1.0 + radius)).sqrt()]
 }
 
 /// cosθ/π above the horizon.
@@ -126,15 +140,46 @@ impl ConvexPolygon {
     }
 }
 
-/// Radius and angle of the concentric map from the unit square to the unit disk.
-fn concentric(uniform: [f64; 2]) -> (f64, f64) {
+/// The concentric map from the unit square to the unit disk: the radius, up to its sign, and the point.
+///
+/// A square around the centre goes to a circle; along the side that it lies on, the point moves by an angle of at most π/4 from the axis.
+#[inline]
+fn concentric(uniform: [f64; 2]) -> (f64, [f64; 2]) {
     let [a, b] = uniform.map(|u| 2.0 * u - 1.0);
-    if a == 0.0 && b == 0.0 {
-        return (0.0, 0.0);
-    }
-    let (radius, angle) =
-        if a.abs() > b.abs() { (a, FRAC_PI_4 * (b / a)) } else { (b, 2.0 * FRAC_PI_4 - FRAC_PI_4 * (a / b)) };
-    if radius < 0.0 { (-radius, angle + PI) } else { (radius, angle) }
+    let is_wide = a.abs() > b.abs();
+    let (radius, along) = if is_wide { (a, b) } else { (b, a) };
+    // The centre itself has no angle: 0/0 is kept from being one.
+    let turn = along / if radius == 0.0 { 1.0 } else { radius };
+    let (sin, cos) = sin_cos_within_eighth(FRAC_PI_4 * turn);
+    let (straight, across) = (radius * cos, radius * sin);
+    (radius, if is_wide { [straight, across] } else { [across, straight] })
+}
+
+/// Sine and cosine of |x| ≤ π/4 by their Taylor series, to 10⁻¹⁶: faster than for any x, and a pure function of x on every machine.
+#[inline]
+fn sin_cos_within_eighth(x: f64) -> (f64, f64) {
+    const SIN: [f64; 7] = [
+        1.0 / 6.0,
+        1.0 / 120.0,
+        1.0 / 5040.0,
+        1.0 / 362_880.0,
+        1.0 / 39_916_800.0,
+        1.0 / 6_227_020_800.0,
+        1.0 / 1_307_674_368_000.0,
+    ];
+    const COS: [f64; 8] = [
+        1.0 / 2.0,
+        1.0 / 24.0,
+        1.0 / 720.0,
+        1.0 / 40_320.0,
+        1.0 / 3_628_800.0,
+        1.0 / 479_001_600.0,
+        1.0 / 87_178_291_200.0,
+        1.0 / 20_922_789_888_000.0,
+    ];
+    let y = x * x;
+    let series = |terms: &[f64]| terms.iter().rev().fold(0.0, |sum, term| term - y * sum);
+    (x - x * y * series(&SIN), 1.0 - y * series(&COS))
 }
 
 fn triangle_area(vertices: [[f64; 3]; 3]) -> f64 {

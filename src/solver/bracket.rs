@@ -13,7 +13,7 @@
 //! Cost: no product where the absorption is given and nowhere zero, one where it is not given, one a bounce of w. Source: Collatz
 //! (1952), "Aufgaben monotoner Art"; Varga (2000), §3.5.
 
-use crate::linalg::{Block, Equation, max_abs};
+use crate::linalg::{Block, Doubled, Equation, Residual, max_abs};
 
 /// Bounces after which rows that lose nothing are given up.
 const BOUNCES: usize = 64;
@@ -37,39 +37,51 @@ impl Bracket {
     }
 }
 
-/// The bracket around `radiance` with this residual; `None` where K has entries below zero, or loses nothing in many bounces.
-pub(super) fn around(equation: Equation<'_>, radiance: &Block, residual: &Block) -> Option<Bracket> {
+/// What rounding takes from a row's sum at most, relative to the magnitudes that are summed: a sum of n products is off by at most
+/// (n + 2) ulp of them.
+pub(super) fn rounding(equation: Equation<'_>) -> f64 {
+    (equation.n_unknowns() as f64 + 8.0) * f64::EPSILON
+}
+
+/// The bracket around `radiance` with the residual `r`; `None` where K has entries below zero, or loses nothing in many bounces.
+pub(super) fn around(
+    equation: Equation<'_>,
+    radiance: &Doubled,
+    residual: &Residual<'_>,
+    r: &Block,
+) -> Option<Bracket> {
     if !equation.transport.is_nonnegative() {
         return None;
     }
-    let (n, n_bands) = (radiance.n_rows(), radiance.n_columns());
-    // A sum of n products is off by at most (n + 2) ulp of the sum of their magnitudes.
-    let rounding = (n as f64 + 4.0) * f64::EPSILON;
+    let (n, n_bands) = (r.n_rows(), r.n_columns());
+    let rounding = rounding(equation);
     let (weight, loss) = weight(equation, rounding)?;
 
     let (mut low, mut high) = (Block::zeros(n, n_bands), Block::zeros(n, n_bands));
+    let mut slack = vec![0.0; n];
     for band in 0..n_bands {
-        let (e, l, r) = (equation.emission.column(band), radiance.column(band), residual.column(band));
+        let e = equation.emission.column(band);
+        let (l, rest) = (radiance.high.column(band), radiance.low.column(band));
         let (w, b) = (weight.column(band), loss.column(band));
-        let is_lit = e.iter().all(|e| *e >= 0.0);
-        let brightest = max_abs(l);
-        // K ≥ 0, so that where L ≥ 0 the magnitudes that a residual sums are what it sums.
-        let is_positive = l.iter().all(|l| *l >= 0.0);
-        let gathered = |i: usize| if is_positive { (r[i] + l[i] - e[i]).abs() } else { brightest };
-        let slack = |i: usize| 2.0 * rounding * (e[i].abs() + l[i].abs() + gathered(i));
+        residual.magnitudes(band, &radiance.high, r, &mut slack);
+        let r = r.column(band);
+        slack.iter_mut().for_each(|magnitude| *magnitude *= 2.0 * rounding);
         let side = |sign: f64, out: &mut Block| {
-            let scale = (0..n).fold(0.0, |worst: f64, i| worst.max((sign * r[i] + slack(i)) / b[i]));
+            let scale = (0..n).fold(0.0, |worst: f64, i| worst.max((sign * r[i] + slack[i]) / b[i]));
             let bounds = out.column_mut(band).iter_mut().enumerate();
             bounds.for_each(|(i, bound)| {
                 let whole = scale * w[i];
-                let closer = sign * r[i] + slack(i) + scale * (w[i] - b[i]).max(0.0);
-                *bound = l[i] + sign * whole.min(closer) * (1.0 + 8.0 * f64::EPSILON);
+                let closer = sign * r[i] + slack[i] + scale * (w[i] - b[i]).max(0.0);
+                // Every step away from L.
+                let away = whole.min(closer) * (1.0 + 8.0 * f64::EPSILON) + sign * rest[i];
+                *bound = l[i] + sign * away;
+                *bound = if sign > 0.0 { bound.next_up() } else { bound.next_down() };
             });
         };
         side(-1.0, &mut low);
         side(1.0, &mut high);
         // Where nothing takes light away there is at least what is emitted.
-        if is_lit {
+        if e.iter().all(|e| *e >= 0.0) {
             low.column_mut(band).iter_mut().zip(e).for_each(|(low, e)| *low = low.max(*e));
         }
     }

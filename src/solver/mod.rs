@@ -1,21 +1,25 @@
 //! Deterministic answers to L = E + K L, one file a method: direct, stationary and Krylov. Knows operators and vectors, never a scene.
 //!
 //! Every method is a struct of its parameters and a [`Solver`]. Iterative ones stop when ‖E + K L − L‖∞ ≤ tolerance · ‖E‖∞ in every
-//! band; running out of budget is a status, divergence and singularity are errors.
+//! band; running out of budget is a status, divergence and singularity are errors. What a method answers is looked at by a residual that
+//! keeps its digits however little is absorbed, and corrected until it stands that: see [`SolveReport::n_refinements`].
 
 mod accelerated;
+mod attempt;
 mod bracket;
 mod budget;
 mod direct;
 mod error;
 mod krylov;
 mod monitor;
+mod refine;
 mod report;
 mod self_adjoint;
 pub mod spectrum;
 mod stationary;
 
-pub use accelerated::{CoarseSpace, DeflatedCg, DeflatedGmres, Perron, TwoGrid};
+pub use accelerated::{CoarseSpace, DeflatedCg, DeflatedGmres, Multigrid, Perron, TwoGrid};
+pub use attempt::Attempt;
 pub use bracket::Bracket;
 pub use budget::{BUDGET, Budget};
 pub use direct::{Cholesky, Factored, Gth, LowRank, Lu, LuNalgebra, RowChange, SingleLu, SparseCholesky, SparseLu};
@@ -47,11 +51,25 @@ pub trait Solver {
         self.is_direct()
     }
 
-    /// Answers the equation, every band; `observer` sees every iterate and may stop it.
+    /// On ‖E + K L − L‖∞ / ‖E‖∞; `None` for a method that does not iterate.
+    fn tolerance(&self) -> Option<f64> {
+        None
+    }
+
+    /// What the method alone makes of the equation, every band: an answer that nobody has verified. [`Solver::solve`] is what is called.
+    ///
+    /// # Errors
+    /// As of [`Solver::solve`].
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError>;
+
+    /// Answers the equation, every band; `observer` sees every iterate and may stop it. What the method's own arithmetic loses where little
+    /// is absorbed is won back by correcting its answer, if that is needed.
     ///
     /// # Errors
     /// A singular or diverging equation, numbers that are not finite, or a property the method needs and the equation lacks.
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError>;
+    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+        refine::solve(self, equation, observer)
+    }
 }
 
 /// One iterate on its way to an observer.
@@ -90,7 +108,8 @@ impl<F: FnMut(Iteration<'_>) -> ControlFlow<()>> Observer for F {
     }
 }
 
-/// Every method of this room at one tolerance, in the order of reports. One more method is one more line.
+/// Every method there is at one tolerance, in the order of reports; those on coarse spaces take the equation's hierarchy, or the constants
+/// alone where it has none. One more method is one more line.
 pub fn all(tolerance: f64) -> Vec<Box<dyn Solver>> {
     vec![
         Box::new(Lu),
@@ -118,25 +137,15 @@ pub fn all(tolerance: f64) -> Vec<Box<dyn Solver>> {
         Box::new(Gmres { tolerance, restart: 30, preconditioner: None }),
         Box::new(FlexibleGmres { tolerance, restart: 30, preconditioner: &MinimalResidual { n_steps: 2 } }),
         Box::new(Anderson { tolerance, depth: 5 }),
-    ]
-}
-
-/// The methods that rest on a coarse space at one tolerance: on the equation's hierarchy, or on the constants alone where it has none.
-pub fn on_coarse_spaces(tolerance: f64) -> Vec<Box<dyn Solver>> {
-    vec![
         Box::new(DeflatedCg { tolerance, n_groups: None }),
         Box::new(DeflatedGmres { tolerance, n_groups: None }),
         Box::new(TwoGrid { tolerance, n_groups: None }),
+        Box::new(Multigrid { tolerance, n_visits: 2 }),
         Box::new(Perron { tolerance }),
     ]
 }
 
-/// Every method there is: those of [`all`], and those [`on_coarse_spaces`].
-pub fn everyone(tolerance: f64) -> Vec<Box<dyn Solver>> {
-    all(tolerance).into_iter().chain(on_coarse_spaces(tolerance)).collect()
-}
-
 /// The method of this name, as reports and the command line give it.
 pub fn named(name: &str, tolerance: f64) -> Option<Box<dyn Solver>> {
-    everyone(tolerance).into_iter().find(|method| method.name() == name)
+    all(tolerance).into_iter().find(|method| method.name() == name)
 }

@@ -15,6 +15,9 @@ const PATIENCE: usize = 1000;
 /// Least relative fall of the residual that counts.
 const PROGRESS: f64 = 1e-7;
 
+/// Iterations that a history has room for from the start.
+const HISTORY: usize = 1024;
+
 /// Keeps the history of one solve and decides when it ends.
 pub(super) struct Monitor<'a> {
     method: &'static str,
@@ -40,7 +43,7 @@ impl<'a> Monitor<'a> {
             best: f64::INFINITY,
             progress: (f64::INFINITY, 0),
             work: Work::default(),
-            history: Vec::new(),
+            history: Vec::with_capacity(HISTORY),
         }
     }
 

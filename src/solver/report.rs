@@ -1,7 +1,7 @@
 //! An answer and how it was come by.
 
 use super::{Bracket, SolveError, bracket};
-use crate::linalg::{Block, Equation, max_abs, worst};
+use crate::linalg::{Block, Doubled, Equation, Residual, max_abs, worst};
 use std::fmt;
 
 /// Why a solver stopped.
@@ -51,11 +51,14 @@ pub struct SolveReport {
     pub n_adjoint_applies: usize,
     /// Work in units of one product with K or K*: entries touched / entries of K. Methods that read single rows or columns count here.
     pub products: f64,
+    /// Corrections that the answer needed once the method had ended: their work is counted above.
+    pub n_refinements: usize,
     /// Entries of the factors of the fullest band, where a sparse factorization stored them.
     pub n_fill: Option<usize>,
     /// Residual by iteration, as the method knew it.
     pub history: Vec<f64>,
-    /// ‖E + K L − L‖∞ / ‖E‖∞, worst band, recomputed from L (by one more product, not counted).
+    /// ‖E + K L − L‖∞ / ‖E‖∞, worst band, recomputed (by one more product, not counted): where the absorption is known without the digits
+    /// that subtracting takes, and before L was rounded to what is returned.
     pub true_residual: f64,
     /// L − below ≤ (I − K)⁻¹E ≤ L + above, whatever the method did; `None` where a row of K gains 1 or more.
     pub bracket: Option<Bracket>,
@@ -83,20 +86,30 @@ impl Work {
         self.n_adjoint_applies += n;
         self.products += n as f64;
     }
+
+    /// Adds what another piece of work came to.
+    pub(super) fn add(&mut self, other: &Work) {
+        self.n_iterations += other.n_iterations;
+        self.n_applies += other.n_applies;
+        self.n_adjoint_applies += other.n_adjoint_applies;
+        self.products += other.products;
+        self.n_fill = self.n_fill.max(other.n_fill);
+    }
 }
 
-/// Verifies an answer and writes its report. Two products with K.
+/// Writes the report on an answer and its residual, as it was evaluated last.
+#[allow(clippy::too_many_arguments)]
 pub(super) fn conclude(
     method: &'static str,
     equation: Equation<'_>,
-    radiance: Block,
+    radiance: Doubled,
+    (residual, r): (&Residual<'_>, &Block),
     stop: Stop,
     work: Work,
     history: Vec<f64>,
+    n_refinements: usize,
 ) -> Result<Solution, SolveError> {
-    let mut residual = Block::zeros(radiance.n_rows(), radiance.n_columns());
-    equation.residual(&radiance, &mut residual);
-    let true_residual = relative_residual(equation.emission, &residual);
+    let true_residual = relative_residual(equation.emission, r);
     if !true_residual.is_finite() {
         return Err(SolveError::NotFinite { method, iteration: work.n_iterations });
     }
@@ -107,12 +120,13 @@ pub(super) fn conclude(
         n_applies: work.n_applies,
         n_adjoint_applies: work.n_adjoint_applies,
         products: work.products,
+        n_refinements,
         n_fill: work.n_fill,
         history,
         true_residual,
-        bracket: bracket::around(equation, &radiance, &residual),
+        bracket: bracket::around(equation, &radiance, residual, r),
     };
-    Ok(Solution { radiance, report })
+    Ok(Solution { radiance: radiance.high, report })
 }
 
 /// max over bands of ‖r‖∞ / ‖E‖∞; NaN if any entry is NaN.

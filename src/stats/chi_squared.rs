@@ -37,6 +37,10 @@ pub enum ChiSquaredError {
 
 /// Tests counts against the counts a hypothesis expects, with the cells of small expectation pooled.
 ///
+/// Counts of independent outcomes are assumed, and expectations that were not fitted to them. Asymptotic in the expectations: at a
+/// significance of 1e-3 false alarms were measured at 0.99e-3 for sixteen cells of 100, and cells of [`MIN_EXPECTED`] are the least that is
+/// in use; in a tail much farther out they make p-values too small.
+///
 /// All outcomes must have a cell: the totals must agree. A count where zero was expected refutes the hypothesis at once.
 /// Cost O(n log n).
 ///

@@ -42,6 +42,11 @@ impl Moments {
         self.merge(&Self { n: n_missing, mean: 0.0, squared_deviations: 0.0 });
     }
 
+    /// From count, mean and Σ (x − mean)².
+    pub(super) fn from_sums(n: u64, mean: f64, squared_deviations: f64) -> Self {
+        Self { n, mean, squared_deviations }
+    }
+
     /// How many numbers.
     pub fn n(&self) -> u64 {
         self.n

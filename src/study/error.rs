@@ -23,4 +23,6 @@ pub enum StudyError {
     NoEstimator,
     #[error("a study needs at least one solver")]
     NoSolver,
+    #[error("an albedo of {albedo} is out of range: 0 ≤ albedo < 1, for at 1 nothing is absorbed")]
+    AlbedoOutOfRange { albedo: f64 },
 }

@@ -1,7 +1,12 @@
 //! Experiments: what varies, what is held, what is recorded.
 
+mod albedo;
+mod duality;
 mod error;
+mod estimation;
+mod foretold;
 mod memory;
+mod methods;
 mod outcome;
 mod provenance;
 mod refinement;
@@ -9,17 +14,24 @@ mod repairs;
 mod run;
 mod sensitivity;
 mod spectrum;
+mod truncation;
 mod watch;
+mod what_if;
 
+pub use albedo::{albedo_study, check_albedos};
+pub use duality::{Duality, LinearSensor};
 pub use error::StudyError;
 pub use memory::memory_estimate;
 pub use outcome::{
-    EstimatorRun, ExchangeSummary, HistoryPoint, LawsMeasured, Pictures, Refinement, RefinementLevel, RepairRun,
-    SamplePoint, SolverRun, StudyOutcome, SurfaceMean, Truncation,
+    AdjointRun, AlbedoLevel, AlbedoStudy, EstimatorRun, ExchangeSummary, Family, HistoryPoint, LawsMeasured, Pictures,
+    Refinement, RefinementLevel, RepairRun, SamplePoint, SolverRun, StudyOutcome, SurfaceMean, Truncation,
 };
 pub use provenance::Provenance;
 pub use refinement::surface_means;
 pub use run::{StudySettings, run, tessellations};
-pub use sensitivity::{Quantity, SensitivityOutcome, Sensor, SurfaceSensitivity, sensitivity, weights};
+pub use sensitivity::{
+    Quantity, SensitivityOutcome, Sensor, SurfaceSensitivity, sensitivity, sensitivity_and_what_if, weights,
+};
 pub use spectrum::{BandSpectrum, Bounces, Counted, SpectrumOutcome, spectrum};
 pub use watch::Watch;
+pub use what_if::{Change, Property, WhatIf};

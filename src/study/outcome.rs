@@ -1,6 +1,6 @@
 //! What a study records. Plain data; `report` turns it into figures and a page.
 
-use super::Provenance;
+use super::{Duality, Provenance};
 use crate::image::Image;
 use serde::Serialize;
 
@@ -22,6 +22,10 @@ pub struct StudyOutcome {
     /// Name of the solver whose answer is the discrete truth below.
     pub reference_solver: String,
     pub solvers: Vec<SolverRun>,
+    /// ⟨W, L⟩ and ⟨E, J⟩ of one sensor, by the reference; every run of `solvers` has its own difference of the two.
+    pub duality: Duality,
+    /// The same scene at other albedos; absent where none were asked for.
+    pub albedos: Option<AlbedoStudy>,
     /// Truncated Neumann series after 0, 1, 2, … bounces, against the discrete truth.
     pub truncation: Vec<Truncation>,
     pub estimators: Vec<EstimatorRun>,
@@ -89,6 +93,7 @@ pub struct SolverRun {
     pub solver: String,
     /// "direct" or "iterative".
     pub kind: String,
+    pub family: Family,
     /// Why it stopped, as one word: "direct", "converged", "budget", "stagnated", "refused".
     pub stop: String,
     /// What it said where it refused the equation; its other numbers are not numbers then.
@@ -104,28 +109,34 @@ pub struct SolverRun {
     pub error: f64,
     /// A bound on ‖L − (I − K)⁻¹E‖∞ / ‖L‖∞ that trusts no solver; `None` where the absorption is too small for one.
     pub error_bound: Option<f64>,
+    /// Importance by the same method; absent where it refused either equation.
+    pub adjoint: Option<AdjointRun>,
     /// Empty for direct methods.
     pub history: Vec<HistoryPoint>,
 }
 
-impl SolverRun {
-    /// A method that could not claim the equation, in its own words.
-    pub fn refused(solver: &str, kind: String, seconds: f64, refusal: String) -> Self {
-        Self {
-            solver: solver.to_string(),
-            kind,
-            stop: "refused".to_string(),
-            refusal: Some(refusal),
-            n_applies: 0,
-            n_adjoint_applies: 0,
-            products: f64::NAN,
-            seconds,
-            true_residual: f64::NAN,
-            error: f64::NAN,
-            error_bound: None,
-            history: Vec::new(),
-        }
-    }
+/// What a method rests on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Family {
+    /// Factors of I − K.
+    Direct,
+    /// Sweeps and fixed polynomials.
+    Stationary,
+    /// The best of all polynomials.
+    Krylov,
+    /// A coarse space, or factors of something near I − K.
+    Accelerated,
+}
+
+/// One method on the adjoint equation J = W + K* J.
+#[derive(Clone, Debug, Serialize)]
+pub struct AdjointRun {
+    pub stop: String,
+    pub products: f64,
+    pub seconds: f64,
+    /// |⟨W, L⟩ − ⟨E, J⟩| / |⟨W, L⟩| of this method's own L and J, the worst band.
+    pub difference: f64,
 }
 
 /// One iteration.
@@ -133,10 +144,35 @@ impl SolverRun {
 pub struct HistoryPoint {
     /// Work so far, in products with K.
     pub products: f64,
+    /// Wall seconds so far, those of looking at the iterates not counted.
+    pub seconds: f64,
     /// ‖E + K L − L‖∞ / ‖E‖∞.
     pub residual: f64,
     /// ‖L − L_ref‖∞ / ‖L_ref‖∞.
     pub error: f64,
+    /// The same as the spectrum of K foretold it; absent where no theory of the method is at hand.
+    pub predicted: Option<f64>,
+}
+
+/// One scene with all that reflects at one albedo after another, by every method.
+#[derive(Clone, Debug, Serialize)]
+pub struct AlbedoStudy {
+    /// On ‖E + K L − L‖∞ / ‖E‖∞.
+    pub tolerance: f64,
+    /// Products after which a method is stopped.
+    pub budget: f64,
+    /// The method without subtraction whose answers are the truth.
+    pub reference_solver: String,
+    /// Darkest first.
+    pub levels: Vec<AlbedoLevel>,
+}
+
+/// Every surface that is not black at one albedo.
+#[derive(Clone, Debug, Serialize)]
+pub struct AlbedoLevel {
+    pub albedo: f64,
+    /// Without histories.
+    pub runs: Vec<SolverRun>,
 }
 
 /// The Neumann series cut after `bounces` bounces.
@@ -189,7 +225,8 @@ pub struct Refinement {
     /// Discretisation error of the finest level's mean reflected radiance, relative: the larger of what the levels extrapolate to
     /// and what was measured beyond noise. NaN where there is one mesh only.
     pub finest_error: f64,
-    /// True if every surface's mean at the finest level agrees with the path tracer within discretisation plus statistical error.
+    /// True if every surface's mean at the finest level that can be compared, at least one, agrees with the path tracer within
+    /// discretisation plus statistical error.
     pub agrees: bool,
     pub surfaces: Vec<SurfaceMean>,
 }
@@ -216,6 +253,8 @@ pub struct SurfaceMean {
     pub standard_error: f64,
     /// Estimated discretisation error of `matrix`.
     pub discretisation_error: f64,
+    /// False where so few paths have found light that their mean and its standard error mean nothing.
+    pub is_comparable: bool,
 }
 
 /// The solved scene from its camera, linear radiance.

@@ -1,20 +1,22 @@
 //! The main study: one scene, every solver and estimator, against each other.
 
+use super::albedo::{albedo_study, check_albedos};
+use super::duality::LinearSensor;
+use super::estimation::estimate_growing;
+use super::methods::{Solved, solve_all};
 use super::outcome::*;
 use super::refinement::{self, LevelSolution};
 use super::repairs;
+use super::truncation::truncate;
 use super::watch::Watch;
 use super::{Provenance, StudyError};
 use crate::assembly::{Exchange, Gather, Measurement, System, assemble_watched};
 use crate::basis::{Bundles, Resolution};
-use crate::compare::{compare_blocks, pooled, relative_max, relative_rms};
-use crate::estimator::{Estimate, Estimator, MatrixWalk, PathTracer, Scoring, Truth, estimate_watched};
-use crate::linalg::{Block, LinearOperator, max_abs};
+use crate::estimator::{Estimator, MatrixWalk, PathTracer, Scoring};
+use crate::linalg::{Block, LinearOperator};
 use crate::oracle;
 use crate::scene::Scene;
-use crate::solver::{self, Iteration, Solver};
-use crate::stats::fit_power_law;
-use std::ops::ControlFlow;
+use crate::solver::{self, Solver};
 use std::time::Instant;
 
 /// What is varied and what is held. No defaults here: these numbers are the experiment.
@@ -28,6 +30,10 @@ pub struct StudySettings {
     pub n_levels: usize,
     /// On ‖E + K L − L‖∞ / ‖E‖∞ of every iterative solver.
     pub tolerance: f64,
+    /// Albedos in [0, 1) at which all that reflects is looked at as well; may be empty.
+    pub albedos: Vec<f64>,
+    /// Products after which a method is stopped there.
+    pub albedo_budget: f64,
     pub exchange: Exchange,
     /// Samples a bundle of the walks on the matrix: 1, 4, 16, … up to this.
     pub walk_samples: u64,
@@ -53,6 +59,7 @@ pub fn run(
     provenance: Provenance,
     watch: &dyn Watch,
 ) -> Result<StudyOutcome, StudyError> {
+    check_albedos(&settings.albedos)?;
     let mut stages = Stages { watch, seconds: Vec::new() };
 
     // Assemble the finest mesh, and hold it to the four laws.
@@ -62,7 +69,17 @@ pub fn run(
 
     // Solve it by every method.
     let methods: Vec<_> = settings.solvers.iter().filter_map(|name| solver::named(name, settings.tolerance)).collect();
-    let (reference_solver, truth, solvers) = stages.time("solve", |progress| solve_all(&methods, &system, progress))?;
+    let sensor = stages.time("measure", |_| LinearSensor::of(scene, &bundles, &system));
+    let solved = stages.time("solve", |progress| solve_all(&methods, &system, &sensor, progress))?;
+    let Solved { reference_solver, truth, duality, runs: solvers } = solved;
+    let albedos = if settings.albedos.is_empty() {
+        None
+    } else {
+        let (albedos, tolerance, budget) = (&settings.albedos, settings.tolerance, settings.albedo_budget);
+        let study = stages
+            .time("albedos", |progress| albedo_study(&system, &methods, albedos, tolerance, budget, &progress))?;
+        Some(study)
+    };
     let repairs = stages.time("repairs", |progress| repairs::compare(&system, settings.tolerance, &truth, progress));
     let truncation = stages.time("truncate", |_| truncate(&system, &truth, 60));
 
@@ -125,6 +142,8 @@ pub fn run(
         repairs,
         reference_solver,
         solvers,
+        duality,
+        albedos,
         truncation,
         estimators,
         refinement,
@@ -160,153 +179,6 @@ pub fn tessellations(scene: &Scene) -> Vec<String> {
         })
     };
     scene.surfaces().iter().filter_map(sentence).collect()
-}
-
-/// Runs every method; the first is the reference that the histories of all are held against.
-fn solve_all(
-    methods: &[Box<dyn Solver>],
-    system: &System,
-    progress: &(dyn Fn(f64) + Sync),
-) -> Result<(String, Block, Vec<SolverRun>), StudyError> {
-    let mut reference: Option<(String, Block)> = None;
-    let mut runs = Vec::new();
-    for (k, method) in methods.iter().enumerate() {
-        progress(k as f64 / methods.len() as f64);
-        let truth = reference.as_ref().map(|(_, truth)| truth);
-        let mut history = Vec::new();
-        // The observer's own time is not the method's.
-        let mut watching = 0.0;
-        let start = Instant::now();
-        let mut record = |iteration: Iteration<'_>| {
-            let paused = Instant::now();
-            if let Some(truth) = truth {
-                let error = relative_max(iteration.iterate, truth);
-                history.push(HistoryPoint { products: iteration.products, residual: iteration.residual, error });
-            }
-            watching += paused.elapsed().as_secs_f64();
-            ControlFlow::Continue(())
-        };
-        let solved = method.solve(system.equation(), &mut record);
-        let seconds = start.elapsed().as_secs_f64() - watching;
-        let kind = if method.is_direct() { "direct" } else { "iterative" }.to_string();
-        let solution = match solved {
-            Ok(solution) => solution,
-            Err(error) if reference.is_some() => {
-                runs.push(SolverRun::refused(method.name(), kind, seconds, error.to_string()));
-                continue;
-            }
-            Err(error) => return Err(error.into()),
-        };
-        let report = &solution.report;
-        runs.push(SolverRun {
-            solver: method.name().to_string(),
-            kind,
-            stop: report.stop.to_string(),
-            refusal: None,
-            n_applies: report.n_applies,
-            n_adjoint_applies: report.n_adjoint_applies,
-            products: report.products,
-            seconds,
-            true_residual: report.true_residual,
-            error: truth.map_or(0.0, |truth| relative_max(&solution.radiance, truth)),
-            error_bound: report.bracket.as_ref().map(|bracket| bracket.relative_width()),
-            history,
-        });
-        if reference.is_none() {
-            reference = Some((method.name().to_string(), solution.radiance));
-        }
-    }
-    let (name, truth) = reference.ok_or(StudyError::NoSolver)?;
-    Ok((name, truth, runs))
-}
-
-/// The Neumann series cut after 0, 1, 2, … bounces: its error, and the bound ‖Kᵏ⁺¹E‖∞ / (1 − ‖K‖∞) that needs no answer.
-fn truncate(system: &System, truth: &Block, limit: usize) -> Vec<Truncation> {
-    let transport = system.transport();
-    let (n, n_bands) = (system.n_bundles(), system.n_bands());
-    let ones = Block::from_fn(n, n_bands, |_, _| 1.0);
-    let mut next = Block::zeros(n, n_bands);
-    transport.apply(&ones, &mut next);
-    let gain: Vec<f64> = next.columns().map(max_abs).collect();
-
-    let mut sum = system.emission().clone();
-    let mut term = system.emission().clone();
-    let mut series = Vec::new();
-    for bounces in 0..limit {
-        transport.apply(&term, &mut next);
-        std::mem::swap(&mut term, &mut next);
-        let bound_of = |band: usize| max_abs(term.column(band)) / (1.0 - gain[band]).max(0.0);
-        let bound = (0..n_bands).map(bound_of).fold(0.0, f64::max) / truth.max_abs();
-        let error = relative_max(&sum, truth);
-        series.push(Truncation { bounces, error, bound });
-        if error < 1e-14 {
-            break;
-        }
-        sum.add_scaled(1.0, &term);
-    }
-    series
-}
-
-/// Estimates with 1, 4, 16, … samples a bundle, each run holding the ones before.
-fn estimate_growing(
-    estimator: &dyn Estimator,
-    most: u64,
-    settings: &StudySettings,
-    truth: &Block,
-    system: &System,
-    progress: &(dyn Fn(f64) + Sync),
-) -> Result<(EstimatorRun, Estimate), StudyError> {
-    let start = Instant::now();
-    let weights = system.etendue();
-    let mut total: Option<Estimate> = None;
-    let mut points = Vec::new();
-    let (mut samples, mut from) = (1, 0);
-    while from < most {
-        let share = |done: f64| progress((from as f64 + done * (samples - from) as f64) / most as f64);
-        let part = estimate_watched(estimator, from..samples, settings.seed, &share);
-        let merged = match total {
-            None => part,
-            Some(sofar) => sofar.merge(&part)?,
-        };
-        if samples > 1 {
-            let error = relative_rms(&merged.mean, truth, weights);
-            points.push(SamplePoint {
-                samples_per_bundle: samples,
-                error,
-                standard_error: predicted(&merged, truth, weights),
-            });
-        }
-        total = Some(merged);
-        (from, samples) = (samples, (4 * samples).min(most));
-    }
-    let estimate = total.ok_or(StudyError::NoEstimator)?;
-    let [reference, mean, variance] =
-        pooled(truth, &estimate.mean, &estimate.variance_of_mean, weights, estimate.n_samples);
-    let verdict = compare_blocks(&reference, &mean, &variance, settings.significance);
-    let (n, errors): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (p.samples_per_bundle as f64, p.error)).unzip();
-    let run = EstimatorRun {
-        estimator: estimator.name().to_string(),
-        truth: match estimator.truth() {
-            Truth::Discrete => "discrete",
-            Truth::Continuous => "continuous",
-        }
-        .to_string(),
-        worst_z: verdict.worst_z,
-        n_comparisons: verdict.n_comparisons,
-        p_value: verdict.p_value,
-        slope: fit_power_law(&n, &errors).map_or(f64::NAN, |line| line.slope),
-        points,
-        seconds: start.elapsed().as_secs_f64(),
-    };
-    Ok((run, estimate))
-}
-
-/// The error that the estimate's own error bars predict, on the scale of [`relative_rms`].
-fn predicted(estimate: &Estimate, truth: &Block, weights: &[f64]) -> f64 {
-    let weigh = |block: &Block, power: i32| -> f64 {
-        block.columns().map(|c| c.iter().zip(weights).map(|(v, w)| w * v.powi(power)).sum::<f64>()).sum()
-    };
-    (weigh(&estimate.variance_of_mean, 1) / weigh(truth, 2)).sqrt()
 }
 
 /// The solved picture, and the same after 0, 1, 2, … bounces: E + W L.

@@ -1,5 +1,6 @@
 //! What a sensor hangs on: derivatives of its reading with respect to every surface's albedo and emission.
 
+use super::what_if::{Change, WhatIf, what_ifs};
 use crate::assembly::System;
 use crate::basis::Bundles;
 use crate::linalg::{Block, LinearOperator};
@@ -34,6 +35,8 @@ pub struct SensitivityOutcome {
     pub dual_reading: Vec<f64>,
     /// In the scene's order.
     pub surfaces: Vec<SurfaceSensitivity>,
+    /// The reading after each change that was asked for.
+    pub what_ifs: Vec<WhatIf>,
     /// Products with K, and with K*.
     pub products: [f64; 2],
 }
@@ -59,6 +62,21 @@ pub fn sensitivity(
     sensor: Sensor,
     solver: &dyn Solver,
 ) -> Result<SensitivityOutcome, SolveError> {
+    sensitivity_and_what_if(scene, bundles, system, sensor, solver, &[])
+}
+
+/// [`sensitivity`], and the reading after each of some changes on its own: exactly, by the derivatives, and afresh where that is cheap.
+///
+/// # Errors
+/// An equation that the solver cannot answer, as it is or changed.
+pub fn sensitivity_and_what_if(
+    scene: &Scene,
+    bundles: &Bundles,
+    system: &System,
+    sensor: Sensor,
+    solver: &dyn Solver,
+    changes: &[Change],
+) -> Result<SensitivityOutcome, SolveError> {
     let measurement = weights(scene, bundles, system, sensor);
     let forward = solver.solve(system.equation(), &mut ())?;
     let backward = solver.solve(system.adjoint().equation(&measurement), &mut ())?;
@@ -83,10 +101,13 @@ pub fn sensitivity(
             }
         }
     }
+    let reading = system.inner(&measurement, &forward.radiance);
+    let what_ifs = what_ifs(scene, bundles, system, &measurement, (&reading, &derivatives), changes, solver)?;
     Ok(SensitivityOutcome {
-        reading: system.inner(&measurement, &forward.radiance),
+        reading,
         dual_reading: system.inner(system.emission(), &backward.radiance),
         surfaces,
+        what_ifs,
         products: [forward.report.products, backward.report.products],
     })
 }

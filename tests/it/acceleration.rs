@@ -5,7 +5,8 @@ use etendue::assembly::System;
 use etendue::compare::relative_max;
 use etendue::linalg::{Block, Equation, Hierarchy, LinearOperator, SelfAdjoint};
 use etendue::solver::{
-    Cg, DeflatedCg, DeflatedGmres, Gmres, Gth, Iteration, Perron, Solution, SolveError, Solver, Stop, TwoGrid,
+    Cg, DeflatedCg, DeflatedGmres, Gmres, Gth, Iteration, Multigrid, Perron, Solution, SolveError, Solver, Stop,
+    TwoGrid,
 };
 use std::ops::ControlFlow;
 
@@ -55,16 +56,22 @@ fn the_albedo_does_not_matter() {
     }
 }
 
-/// Undeflated, the same albedos cost ever more products and all the digits.
+/// Undeflated, the same albedos cost ever more products, and all the digits unless they are won back by corrections.
 #[test]
 fn plain_conjugate_gradients_lose_what_deflation_keeps() {
     let case = Case::new("two-rooms", 0.5);
     let system = painted(&case, Some(1.0 - 1e-12));
     let reference = solve(&Gth, system.equation());
-    let plain = solve(&Cg { tolerance: TOLERANCE }, system.equation());
+    let unknown = Equation { absorption: None, ..system.equation() };
+    let plain = solve(&Cg { tolerance: TOLERANCE }, unknown);
     assert!(relative_max(&plain.radiance, &reference.radiance) > 1e-6 && plain.report.products > 40.0);
+    let refined = solve(&Cg { tolerance: TOLERANCE }, system.equation());
+    // The tolerance over the lamp's share of the walls, some hundredth.
+    assert!(relative_max(&refined.radiance, &reference.radiance) <= 100.0 * TOLERANCE);
+    assert!(refined.report.n_refinements > 0 && refined.report.products > plain.report.products);
     let two_grid = solve(&TwoGrid { tolerance: TOLERANCE, n_groups: None }, system.equation());
     assert!(relative_max(&two_grid.radiance, &reference.radiance) <= TOLERANCE);
+    assert_eq!(two_grid.report.n_refinements, 0);
     assert!(two_grid.report.products < plain.report.products);
 }
 
@@ -91,7 +98,12 @@ fn relative_distance(case: &Case, a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn a_few_products_reach_the_error_of_the_mesh() {
-    for (name, coarse, fine, most) in [("corner-box", 0.2, 0.1, 4.0), ("two-rooms", 0.5, 0.25, 3.0)] {
+    for (name, coarse, fine, most) in [
+        ("corner-box", 0.2, 0.1, 3.0),
+        ("cornell-box", 0.25, 0.125, 3.0),
+        ("two-rooms", 0.5, 0.25, 3.0),
+        ("maze", 0.5, 0.3, 3.0),
+    ] {
         let (case, finer) = (Case::new(name, coarse), Case::new(name, fine));
         let solved = |case: &Case| solve(&Cg { tolerance: TOLERANCE }, case.system.equation()).radiance;
         let (truth, reference) = (solved(&case), solved(&finer));
@@ -112,13 +124,56 @@ fn a_few_products_reach_the_error_of_the_mesh() {
     }
 }
 
+/// What an iteration takes off the residual, over the second half of a solve.
+fn rate(history: &[f64]) -> f64 {
+    let (last, middle) = (history.len() - 1, history.len() / 2);
+    (history[last] / history[middle]).powf(1.0 / (last - middle) as f64)
+}
+
+/// The second kind: halve the patches, and an iteration takes off the more; the albedo has no part in it.
+#[test]
+fn multigrid_converges_the_faster_the_finer_the_mesh() {
+    for (name, sizes) in [("two-rooms", [1.0, 0.5]), ("cornell-box", [0.5, 0.25])] {
+        for n_visits in [1, 2] {
+            let solver = Multigrid { tolerance: TOLERANCE, n_visits };
+            for albedo in [0.9, 1.0 - 1e-9] {
+                let rates = sizes.map(|size| {
+                    let case = Case::new(name, size);
+                    let system = painted(&case, Some(albedo));
+                    let answer = solve(&solver, system.equation());
+                    let reference = solve(&Gth, system.equation());
+                    let error = relative_max(&answer.radiance, &reference.radiance);
+                    assert!(error <= 1e-10, "{name} {size}: {error:e}");
+                    rate(&answer.report.history)
+                });
+                assert!(rates[1] < 0.75 * rates[0] && rates[0] < 0.5, "{name} {n_visits} {albedo}: {rates:?}");
+            }
+        }
+    }
+}
+
+/// Nested iteration: the first answer of multigrid, one bounce from the coarse levels', is nearer than two-grid's, which has no finer level.
+#[test]
+fn multigrid_begins_where_two_grid_does_or_nearer() {
+    let case = Case::new("corner-box", 0.12);
+    let truth = solve(&Gth, case.system.equation()).radiance;
+    let first = |solver: &dyn Solver| {
+        let mut stop = |_: Iteration<'_>| ControlFlow::Break(());
+        relative_max(&solver.solve(case.system.equation(), &mut stop).unwrap().radiance, &truth)
+    };
+    let two_grid = first(&TwoGrid { tolerance: TOLERANCE, n_groups: None });
+    let multigrid = first(&Multigrid { tolerance: TOLERANCE, n_visits: 2 });
+    assert!(multigrid < two_grid && multigrid < 0.05, "{multigrid:e} {two_grid:e}");
+}
+
 #[test]
 fn importance_is_solved_alike() {
     let case = scenes::find("corner-box");
     let measurement = Block::from_fn(case.system.n_bundles(), case.system.n_bands(), |i, _| f64::from(i % 7 == 0));
     let adjoint = case.system.adjoint();
     let reference = solve(&Gth, adjoint.equation(&measurement));
-    let solvers: [&dyn Solver; 3] = [
+    let solvers: [&dyn Solver; 4] = [
+        &Multigrid { tolerance: TOLERANCE, n_visits: 1 },
         &DeflatedCg { tolerance: TOLERANCE, n_groups: None },
         &TwoGrid { tolerance: TOLERANCE, n_groups: None },
         &Perron { tolerance: TOLERANCE },

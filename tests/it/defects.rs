@@ -78,12 +78,12 @@ fn pooling_leaves_no_bundle_out_and_invents_no_comparison() {
     let ones = Block::from_fn(10, 1, |_, _| 1.0);
     // 10 bundles × 100 scores: two comparisons of four, the last two bundles joined to the second.
     let value = Block::from_fn(10, 1, |r, _| if r == 9 { 7.0 } else { 1.0 });
-    let [reference, mean, variance] = pooled(&ones, &value, &ones, &[1.0; 10], 100);
+    let [reference, mean, variance] = pooled(&ones, &value, &ones, &[1.0; 10], 100, &[1.0]);
     assert_eq!((reference.n_rows(), reference.values()), (2, &[1.0, 1.0][..]));
     assert_eq!(mean.values(), [1.0, 2.0]);
     assert_eq!(variance.values(), [4.0 / 16.0, 6.0 / 36.0]);
     // Too few scores in all.
-    assert_eq!(pooled(&ones, &value, &ones, &[1.0; 10], 4)[0].n_rows(), 0);
+    assert_eq!(pooled(&ones, &value, &ones, &[1.0; 10], 4, &[1.0])[0].n_rows(), 0);
 }
 
 #[test]

@@ -4,11 +4,13 @@ mod folder;
 mod mock;
 
 use etendue::image::{Image, decode_exr};
-use etendue::report::{Artifact, SCHEMA, render};
-use etendue::study::{HistoryPoint, Pictures, StudyOutcome, Truncation};
+use etendue::report::{Artifact, SCHEMA, render, spectrum_files};
+use etendue::study::{
+    BandSpectrum, Family, HistoryPoint, Pictures, SolverRun, SpectrumOutcome, StudyOutcome, Truncation,
+};
 use std::collections::BTreeSet;
 
-const FIGURES: [&str; 4] = ["convergence", "truncation", "monte-carlo", "refinement"];
+const FIGURES: [&str; 5] = ["convergence", "albedos", "truncation", "monte-carlo", "refinement"];
 
 fn file<'a>(files: &'a [Artifact], name: &str) -> &'a [u8] {
     &files.iter().find(|file| file.name == name).unwrap_or_else(|| panic!("{name} is missing")).bytes
@@ -28,7 +30,7 @@ fn assert_sound(outcome: &StudyOutcome) -> Vec<Artifact> {
     let files = render(outcome).unwrap();
 
     // Every figure is there three times, and every name once.
-    for figure in FIGURES {
+    for figure in FIGURES.iter().filter(|figure| **figure != "albedos" || outcome.albedos.is_some()) {
         let svg = text(&files, &format!("{figure}.svg"));
         let tree = roxmltree::Document::parse(svg).unwrap_or_else(|error| panic!("{figure}.svg: {error}"));
         assert!(tree.root_element().attribute("viewBox").is_some() && !svg.contains("NaN"), "{figure}.svg");
@@ -122,14 +124,16 @@ fn csv_brings_every_number_back() {
     let same = |field: &str, value: f64| field.parse::<f64>().unwrap().to_bits() == value.to_bits();
 
     let table = rows(text(&files, "convergence.csv"));
-    assert_eq!(table[0], ["solver", "iteration", "products", "residual", "error"]);
+    assert_eq!(table[0], ["solver", "iteration", "products", "seconds", "residual", "error", "predicted_error"]);
     let points = outcome.solvers.iter().flat_map(|run| run.history.iter().map(move |p| (&run.solver, p)));
     assert_eq!(table.len() - 1, points.clone().count());
     for (row, (solver, p)) in table[1..].iter().zip(points) {
         assert!(
-            row[0] == solver && same(row[2], p.products) && same(row[3], p.residual) && same(row[4], p.error),
+            row[0] == solver && same(row[2], p.products) && same(row[3], p.seconds) && same(row[4], p.residual),
             "{row:?}"
         );
+        assert!(same(row[5], p.error) && row[6].is_empty() == p.predicted.is_none(), "{row:?}");
+        assert!(p.predicted.is_none_or(|predicted| same(row[6], predicted)), "{row:?}");
     }
     for (row, t) in rows(text(&files, "truncation.csv"))[1..].iter().zip(&outcome.truncation) {
         assert!(row[0] == t.bounces.to_string() && same(row[1], t.error) && same(row[2], t.bound), "{row:?}");
@@ -150,7 +154,119 @@ fn csv_brings_every_number_back() {
     for (row, run) in rows(text(&files, "solvers.csv"))[1..].iter().zip(&outcome.solvers) {
         assert!(row[0] == run.solver && same(row[6], run.seconds) && same(row[8], run.error), "{row:?}");
         assert_eq!(row[9].is_empty(), run.error_bound.is_none());
+        assert!(same(row[12], run.adjoint.as_ref().unwrap().difference), "{row:?}");
     }
+    let levels = &outcome.albedos.as_ref().unwrap().levels;
+    let runs = levels.iter().flat_map(|level| level.runs.iter().map(move |run| (level.albedo, run)));
+    let table = rows(text(&files, "albedos.csv"));
+    assert_eq!(table.len() - 1, runs.clone().count());
+    for (row, (albedo, run)) in table[1..].iter().zip(runs) {
+        assert!(same(row[0], albedo) && row[1] == run.solver && row[3] == run.stop, "{row:?}");
+        assert!(row[4] == "NaN" && run.products.is_nan() || same(row[4], run.products), "{row:?}");
+    }
+}
+
+/// The words of a figure, in the order they were written.
+fn words(svg: &str) -> Vec<String> {
+    let tree = roxmltree::Document::parse(svg).unwrap();
+    let texts = tree.descendants().filter(|node| node.has_tag_name("text"));
+    texts.map(|node| node.text().unwrap_or_default().trim().to_owned()).collect()
+}
+
+#[test]
+fn no_method_is_dropped_from_the_figure_of_albedos() {
+    let mut outcome = mock::cornell();
+    // One that is refused everywhere has no point, but its name.
+    for level in &mut outcome.albedos.as_mut().unwrap().levels {
+        (level.runs[5].stop, level.runs[5].refusal) = ("refused".into(), Some("no".into()));
+        level.runs[5].products = f64::NAN;
+    }
+    let files = assert_sound(&outcome);
+    let words = words(text(&files, "albedos.svg"));
+    for run in outcome.solvers.iter().filter(|run| run.kind == "iterative") {
+        assert!(words.iter().any(|word| word.starts_with(&run.solver)), "{} is not in {words:?}", run.solver);
+    }
+    for expected in ["Gauss–Seidel (refused)", "budget, 1\u{202f}000 products", "not there within it", "a = 0.999"] {
+        assert!(words.iter().any(|word| word == expected), "'{expected}' is not in {words:?}");
+    }
+    let html = text(&files, "report.html");
+    for expected in ["As walls turn white", "&gt; 1\u{202f}000 · ", "Refused at 0.999: Cholesky needs"] {
+        assert!(html.contains(expected), "'{expected}' is not on the page");
+    }
+
+    // What was not asked for is not on the page.
+    outcome.albedos = None;
+    let files = assert_sound(&outcome);
+    assert!(files.iter().all(|file| !file.name.starts_with("albedos")));
+    assert!(!text(&files, "report.html").contains("As walls turn white"));
+}
+
+#[test]
+fn many_methods_are_parted_by_what_they_rest_on() {
+    let mut outcome = mock::cornell();
+    let titles = |outcome: &StudyOutcome| {
+        let files = assert_sound(outcome);
+        words(text(&files, "convergence.svg")).into_iter().filter(|word| word.contains("error against")).count()
+    };
+    assert_eq!(titles(&outcome), 0, "few methods share one panel without a family");
+    let more: Vec<SolverRun> = (0..10)
+        .map(|k| {
+            let family = [Family::Stationary, Family::Krylov, Family::Accelerated][k % 3];
+            SolverRun { solver: format!("method-{k}"), family, ..outcome.solvers[4].clone() }
+        })
+        .collect();
+    outcome.solvers.extend(more);
+    // Three families, against products and against time.
+    assert_eq!(titles(&outcome), 6);
+}
+
+#[test]
+fn what_the_spectrum_foretold_is_drawn_and_named_once() {
+    let mut outcome = mock::cornell();
+    let n_notes = |outcome: &StudyOutcome| {
+        let files = assert_sound(outcome);
+        words(text(&files, "convergence.svg")).into_iter().filter(|word| word.contains("foretold")).count()
+    };
+    assert_eq!(n_notes(&outcome), 1);
+    outcome.solvers.iter_mut().flat_map(|run| &mut run.history).for_each(|point| point.predicted = None);
+    assert_eq!(n_notes(&outcome), 0);
+}
+
+/// A spectrum of these eigenvalues in two bands.
+fn spectrum_of(eigenvalues: &[[f64; 2]], radius: f64) -> SpectrumOutcome {
+    let band = |name: &str| BandSpectrum {
+        band: name.into(),
+        radius: [0.9 * radius, radius],
+        eigenvalues: eigenvalues.to_vec(),
+        singular_values: eigenvalues.iter().map(|[re, im]| 1.1 * re.hypot(*im)).collect(),
+        condition: None,
+        effective_rank: None,
+        bounces: Vec::new(),
+    };
+    SpectrumOutcome { n_bundles: 9, bands: vec![band("red"), band("blue")], products: 7 }
+}
+
+#[test]
+fn a_spectrum_is_drawn_whatever_its_numbers() {
+    let svg = |outcome: &SpectrumOutcome| {
+        let files = spectrum_files(outcome).unwrap();
+        let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
+        assert_eq!(names, ["spectrum.svg", "spectrum.png", "spectrum.csv"]);
+        let svg = text(&files, "spectrum.svg").to_owned();
+        assert!(!svg.contains("NaN"));
+        svg
+    };
+    // Real ones are told to be, with a row of bars a band.
+    let real = words(&svg(&spectrum_of(&[[0.8, 0.0], [-0.3, 0.0]], 0.8)));
+    let complex = words(&svg(&spectrum_of(&[[0.8, 0.0], [0.1, 0.3], [0.1, -0.3]], 0.8)));
+    assert!(
+        real.iter().any(|word| word.contains("all are real")) && !complex.iter().any(|word| word.contains("real,"))
+    );
+    for radius in [0.0, f64::INFINITY, f64::NAN, 1e300] {
+        svg(&spectrum_of(&[[f64::NAN, 0.0], [0.1, f64::INFINITY], [1e300, 0.0]], radius));
+    }
+    svg(&spectrum_of(&[], 0.0));
+    svg(&SpectrumOutcome { n_bundles: 0, bands: Vec::new(), products: 0 });
 }
 
 #[test]
@@ -161,6 +277,9 @@ fn text_is_escaped_everywhere() {
     outcome.provenance.command.push(hostile.into());
     outcome.provenance.settings.insert(hostile.into(), hostile.into());
     outcome.tessellations.push(hostile.into());
+    outcome.duality.sensor = hostile.into();
+    outcome.albedos.as_mut().unwrap().reference_solver = hostile.into();
+    outcome.albedos.as_mut().unwrap().levels[0].runs[4].solver = hostile.into();
     outcome.reference_solver = hostile.into();
     outcome.solvers[3].solver = hostile.into();
     outcome.estimators[0].estimator = hostile.into();
@@ -178,6 +297,7 @@ fn text_is_escaped_everywhere() {
 fn nothing_measured_still_makes_a_page() {
     let mut outcome = mock::cornell();
     outcome.solvers.clear();
+    outcome.albedos.as_mut().unwrap().levels.clear();
     outcome.truncation.clear();
     outcome.estimators.clear();
     outcome.refinement.levels.clear();
@@ -198,7 +318,9 @@ fn no_number_breaks_a_figure() {
         outcome.pictures = None;
         for run in &mut outcome.solvers {
             for (i, p) in run.history.iter_mut().enumerate() {
-                *p = HistoryPoint { products: pick(i), residual: pick(i + 1), error: pick(i + 2) };
+                let predicted = (i % 2 == 0).then(|| pick(i + 4));
+                let (products, seconds, residual, error) = (pick(i), pick(i + 3), pick(i + 1), pick(i + 2));
+                *p = HistoryPoint { products, seconds, residual, error, predicted };
             }
             (run.error, run.seconds, run.products, run.error_bound) = (pick(0), pick(1), pick(2), Some(pick(3)));
         }
@@ -218,6 +340,14 @@ fn no_number_breaks_a_figure() {
         for (i, s) in outcome.refinement.surfaces.iter_mut().enumerate() {
             (s.matrix, s.path_tracer, s.standard_error, s.discretisation_error) =
                 (pick(i), pick(i + 1), pick(i + 2), pick(i + 3));
+        }
+        let albedos = outcome.albedos.as_mut().unwrap();
+        (albedos.tolerance, albedos.budget) = (pick(0), pick(1));
+        for (i, level) in albedos.levels.iter_mut().enumerate() {
+            level.albedo = pick(i);
+            for (k, run) in level.runs.iter_mut().enumerate() {
+                (run.products, run.seconds, run.error) = (pick(i + k), pick(i + k + 1), pick(i + k + 2));
+            }
         }
         for (i, (_, seconds)) in outcome.stages.iter_mut().enumerate() {
             *seconds = pick(i);

@@ -2,7 +2,9 @@
 
 use crate::sphere::{Cells, test_sampler};
 use etendue::geometry::Vec3;
-use etendue::sampling::{AliasError, AliasRows, AliasTable, Sobol, Stream, Streams, mix_seed, warp};
+use etendue::sampling::{
+    AliasError, AliasRows, AliasTable, CumulativeRows, PaddedSobol, Sobol, Stream, Streams, mix_seed, warp,
+};
 use etendue::stats::{Moments, chi_squared_test, critical_z, sidak_level, z_score};
 use std::collections::HashSet;
 
@@ -54,6 +56,34 @@ fn uniform_numbers_are_uniform_within_and_across_streams() {
         let p = chi_squared_test(&counts, &expected).unwrap().p_value;
         assert!(p > sidak_level(SIGNIFICANCE, 2), "p = {p:e}");
     }
+}
+
+/// Three numbers of one block: each uniform to its last digits, and together.
+#[test]
+fn three_numbers_of_a_block_are_uniform_together() {
+    let n_cells = 12;
+    let streams = Streams::new(30, "blocks of three");
+    let (mut coarse, mut fine) = (vec![0; n_cells * n_cells * n_cells], vec![0; n_cells * n_cells * n_cells]);
+    let mut stream = streams.stream(0, 0);
+    for _ in 0..N_SAMPLES {
+        let numbers = stream.uniform3();
+        assert!(numbers.iter().all(|u| (0.0..1.0).contains(u)));
+        let cell = |numbers: [f64; 3]| numbers.iter().fold(0, |cell, u| cell * n_cells + (u * n_cells as f64) as usize);
+        coarse[cell(numbers)] += 1;
+        // The last 21 of 42 digits.
+        fine[cell(numbers.map(|u| (u * f64::from(1 << 21)).fract()))] += 1;
+    }
+    let expected = vec![N_SAMPLES as f64 / coarse.len() as f64; coarse.len()];
+    for counts in [coarse, fine] {
+        let p = chi_squared_test(&counts, &expected).unwrap().p_value;
+        assert!(p > sidak_level(SIGNIFICANCE, 2), "p = {p:e}");
+    }
+
+    // Half a block that is left over is dropped: the next numbers are those of the next block.
+    let (mut left_over, mut none) = (streams.stream(1, 1), streams.stream(1, 1));
+    left_over.uniform();
+    none.uniform2();
+    assert_eq!(left_over.uniform3(), none.uniform3());
 }
 
 #[test]
@@ -386,4 +416,89 @@ fn scrambled_points_integrate_without_bias_and_at_a_higher_order() {
     // N^(−3/2) up to logarithms; Monte Carlo's −1/2 and an unscrambled net's −1 are both far off.
     let line = etendue::stats::fit_power_law(&sizes.map(|n| n as f64), &spreads).unwrap();
     assert!(line.slope < -1.25, "{line:?}");
+}
+
+/// The quality t of the first 2ᵐ points in two dimensions: every dyadic box of area 2^(t − m) holds its share, 2ᵗ points.
+fn pair_quality(points: &[[f64; 32]], pair: (usize, usize), m: u32) -> u32 {
+    let holds = |t: u32| {
+        (0..=m - t).all(|a| {
+            let mut counts = std::collections::HashMap::new();
+            for p in points {
+                let cell = |x: f64, digits: u32| (x * f64::from(1u32 << digits)) as u64;
+                *counts.entry((cell(p[pair.0], a), cell(p[pair.1], m - t - a))).or_insert(0u32) += 1;
+            }
+            counts.values().all(|n| *n == 1 << t)
+        })
+    };
+    (0..=m).find(|t| holds(*t)).expect("one box holds all")
+}
+
+/// Every one of 32 dimensions is stratified, and no two are alike: a wrong direction number would show as a pair far from a net. Neighbours, which
+/// walks use together, are good ones.
+#[test]
+fn pairs_of_all_dimensions_are_nearly_nets() {
+    let (m, sobol) = (10, Sobol::<32>::new(67));
+    let points: Vec<[f64; 32]> = (0..1 << m).map(|k| sobol.point(k)).collect();
+    let mut worst = 0;
+    for a in 0..32 {
+        assert_eq!(pair_quality(&points, (a, a), 0), 0);
+        let strata: HashSet<u64> = points.iter().map(|p| (p[a] * 1024.0) as u64).collect();
+        assert_eq!(strata.len(), 1024, "dimension {a}");
+        for b in 0..a {
+            worst = worst.max(pair_quality(&points, (a, b), m));
+        }
+    }
+    assert!(worst <= 7, "t = {worst} of {m}");
+}
+
+/// Padding keeps what walks rely on: every dimension is stratified over aligned blocks, pairs are (0, 2)-nets, different pairs are independent.
+#[test]
+fn padding_dimensions_are_pairs_of_nets() {
+    let sobol = PaddedSobol::new(71);
+    for first in [0, 3 << 8, 5 << 20] {
+        for pair in [32, 34, 70] {
+            let points: Vec<[f64; 2]> =
+                (first..first + 256).map(|k| [0, 1].map(|d| sobol.coordinate(k, pair + d))).collect();
+            for a in 0..=8u32 {
+                let cell = |x: f64, digits: u32| (x * f64::from(1u32 << digits)) as u64;
+                let boxes: HashSet<_> = points.iter().map(|p| (cell(p[0], a), cell(p[1], 8 - a))).collect();
+                assert_eq!(boxes.len(), 256, "dimensions {pair} and {}, {a} digits", pair + 1);
+            }
+        }
+    }
+    let matches = Sobol::<32>::new(71).point(12_345);
+    assert!((0..32).all(|d| sobol.coordinate(12_345, d) == matches[d]));
+
+    // Products across pairs average to nothing more than chance leaves.
+    let m: Moments = (0..N_SAMPLES)
+        .map(|seed| {
+            let sobol = PaddedSobol::new(mix_seed(73, seed));
+            (sobol.coordinate(5, 32) - 0.5) * (sobol.coordinate(5, 34) - 0.5)
+        })
+        .collect();
+    let z = z_score(m.mean(), 0.0, m.variance_of_mean());
+    assert!(z.abs() < critical_z(SIGNIFICANCE, 1), "z = {z}");
+}
+
+#[test]
+fn cumulative_rows_sample_their_probabilities_in_order() {
+    let weights = [0.05, 0.0, 0.3, 0.15, 0.2];
+    let rows = CumulativeRows::new(2, 5, |i, out| {
+        if i == 1 {
+            out.copy_from_slice(&weights)
+        }
+    });
+    let expected = [
+        (0.0, Some(0)),
+        (0.049, Some(0)),
+        (0.051, Some(2)),
+        (0.34, Some(2)),
+        (0.36, Some(3)),
+        (0.69, Some(4)),
+        (0.71, None),
+    ];
+    for (uniform, outcome) in expected {
+        assert_eq!(rows.sample(1, uniform), outcome, "{uniform}");
+        assert_eq!(rows.sample(0, uniform), None, "a row of zeros has no outcome");
+    }
 }

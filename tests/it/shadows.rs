@@ -19,7 +19,7 @@ const TOLERANCE: f64 = 1e-7;
 const WHOLE: f64 = 1e12;
 
 /// So many trials where nobody asks for all of them with `ETENDUE_LARGE=1`.
-fn n_trials(few: usize, many: usize) -> usize {
+pub fn n_trials(few: usize, many: usize) -> usize {
     if std::env::var("ETENDUE_LARGE").is_ok_and(|v| v == "1") { many } else { few }
 }
 
@@ -98,6 +98,7 @@ fn closed_scenes_close_before_any_repair() {
         (gallery::floating_block(1).unwrap(), 0.25, 1e-7, 1e-6),
         (gallery::floating_block(1).unwrap(), 0.25, 1e-10, 1e-9),
         (closed_cornell_box(), 0.5, 1e-7, 1e-6),
+        (closed_cornell_box(), 0.5, 1e-10, 1e-9),
     ];
     for (scene, patch_size, tolerance, allowed) in scenes {
         let system = exchange(&scene, patch_size, tolerance);

@@ -1,10 +1,10 @@
 //! Every solver × every scene of the gallery.
 
 use super::scenes::{self, coarse};
-use etendue::assembly::RepairMethod;
+use etendue::assembly::{RepairMethod, System};
 use etendue::compare::relative_max;
 use etendue::gallery::Exact;
-use etendue::linalg::{Block, Equation, LinearOperator, SelfAdjoint};
+use etendue::linalg::{Block, Dense, Equation, LinearOperator, Range, SelfAdjoint};
 use etendue::solver::{self, Budget, Cg, Gth, Iteration, Lu, Neumann, Observer, Solution, SolveError, Solver, Stop};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -193,6 +193,73 @@ impl LinearOperator for Counting<'_> {
 /// Products that every answer is verified with: its true residual.
 const VERIFICATION: usize = 1;
 
+/// What methods on a coarse space spend, in products.
+struct CoarseWork {
+    /// K once, and an elimination of ⅓ m³.
+    setup: f64,
+    /// K P once, and the coarse factors.
+    pass: f64,
+    /// Three times the strong entries.
+    near: f64,
+}
+
+impl CoarseWork {
+    fn of(system: &System, most: f64) -> Self {
+        let (n, n_bands) = (system.n_bundles(), system.n_bands());
+        let m = system.hierarchy().finest_within(most as usize).unwrap().n_groups() as f64;
+        let size = (n * n) as f64;
+        let mut row = vec![0.0; n];
+        let albedo = system.transport().scattering().values();
+        let mut strong = 0;
+        for band in 0..n_bands {
+            let root = |i: usize| (system.etendue()[i] / albedo.get(i, band)).sqrt();
+            let is_strong = |i: usize, j: usize, k: f64| {
+                albedo.get(i, band) > 0.0 && albedo.get(j, band) > 0.0 && root(i) * k > 4.0 / n as f64 * root(j)
+            };
+            let mut n_strong = 0;
+            for i in 0..n {
+                system.transport().row(band, i, &mut row);
+                n_strong += row.iter().enumerate().filter(|(j, k)| is_strong(i, *j, **k)).count();
+            }
+            strong = strong.max(n_strong);
+        }
+        let near = 3.0 * strong as f64 / size;
+        Self { setup: 1.0 + m.powi(3) / (3.0 * size), pass: m / n as f64 + m * m / size, near }
+    }
+}
+
+/// What the low-rank stand-in spends to find its range, in K written out, and every time it is applied, in products.
+fn low_rank_work(transport: &dyn LinearOperator) -> [f64; 2] {
+    let n_bands = transport.n_bands() as f64;
+    let size = (transport.n_rows() as f64).powi(2);
+    let of_band = |band: usize| {
+        let range = Range::find(&Dense::from_operator(transport, band), 0.5, 0);
+        let rank = range.rank() as f64;
+        [range.n_products as f64, (2.0 * size.sqrt() * rank + rank * rank) / size]
+    };
+    let sums = (0..transport.n_bands()).map(of_band).fold([0.0; 2], |sum, of| [sum[0] + of[0], sum[1] + of[1]]);
+    sums.map(|sum| sum / n_bands)
+}
+
+/// What multigrid spends to set up, on its first correction, and on every other, in products.
+fn multigrid_work(system: &System, n_visits: f64) -> [f64; 3] {
+    let n = system.n_bundles() as f64;
+    let groups = system.hierarchy().levels().iter().map(|level| level.n_groups() as f64);
+    let last = groups.clone().position(|m| m <= n.powf(2.0 / 3.0).floor()).unwrap();
+    let groups: Vec<f64> = groups.take(last + 1).collect();
+    let (m, above) = (groups[last], &groups[..last]);
+    let formed = above.iter().map(|m| m * m).sum::<f64>() + m.powi(3) / 3.0;
+    // A level reads its matrix after its bounce, and after every answer of the next level but the last.
+    let cycle = above.iter().rev().fold(m * m, |below, m| n_visits * (m * m + below));
+    let mut nested = m * m;
+    for k in (0..last).rev() {
+        let size = above[k] * above[k];
+        nested += size + above[k..].iter().rev().fold(m * m, |below, m| n_visits * (m * m + below));
+    }
+    let spread = groups[0] / n;
+    [1.0 + formed / (n * n), spread + nested / (n * n), spread + cycle / (n * n)]
+}
+
 #[test]
 fn work_is_counted_as_it_was_done() {
     let case = scenes::find("cornell-box");
@@ -201,6 +268,8 @@ fn work_is_counted_as_it_was_done() {
     let (n, n_bands) = (case.system.n_bundles(), case.system.n_bands());
     for solver in solver::all(1e-6) {
         let (transport, propagation) = (Counting::new(plain.transport), Counting::new(form.propagation));
+        let coarse =
+            CoarseWork::of(&case.system, if solver.name() == "perron" { 1.0 } else { (n as f64).powf(2.0 / 3.0) });
         let self_adjoint = Some(SelfAdjoint { propagation: &propagation, ..form });
         let answer = solve(&*solver, Equation { transport: &transport, self_adjoint, ..plain });
         let report = &answer.report;
@@ -216,8 +285,10 @@ fn work_is_counted_as_it_was_done() {
             "lu" | "lu-nalgebra" | "gth" | "sparse-lu" => (0, 0.0, whole, 0),
             "cholesky" | "sparse-cholesky" => (3, 3.0, 0, 0),
             "lu-f32" => (iterations + 1, (iterations + 1) as f64, whole, 0),
-            // What finds the range works on K written out, which the report counts too.
-            "low-rank" => (iterations + 1, report.products, whole, 0),
+            "low-rank" => {
+                let [prepared, pass] = low_rank_work(plain.transport);
+                (iterations + 1, prepared + 1.0 + iterations as f64 * (1.0 + pass), whole, 0)
+            }
             "neumann" => (iterations + 1, (iterations + 1) as f64, 0, 0),
             "jacobi" => (iterations + 1, (iterations + 1) as f64, whole, 0),
             // Two to check G, twelve of Lanczos.
@@ -233,13 +304,28 @@ fn work_is_counted_as_it_was_done() {
             "gmres" | "anderson" => (iterations + 1, (iterations + 1) as f64, 0, 0),
             // Two steps of the preconditioner and one product of its own.
             "fgmres" => (3 * iterations + 1, (3 * iterations + 1) as f64, 0, 0),
+            "deflated-cg" => {
+                let an_iteration = 1.0 + coarse.pass + coarse.near;
+                (iterations, coarse.setup + coarse.pass + iterations as f64 * an_iteration, whole, 0)
+            }
+            "deflated-gmres" => {
+                (iterations + 1, coarse.setup + 1.0 + iterations as f64 * (1.0 + coarse.pass), whole, 0)
+            }
+            "two-grid" | "perron" => {
+                let near = if solver.name() == "perron" { 0.0 } else { coarse.near };
+                (iterations, coarse.setup + coarse.pass + iterations as f64 * (1.0 + coarse.pass + near), whole, 0)
+            }
+            "multigrid" => {
+                let [setup, first, pass] = multigrid_work(&case.system, 2.0);
+                (iterations, setup + first + iterations as f64 * (1.0 + pass + coarse.near), whole, 0)
+            }
             other => panic!("what does '{other}' cost?"),
         };
-        assert_eq!((report.n_applies, report.products, rows, columns), expected, "{}", solver.name());
+        assert_eq!((report.n_applies, rows, columns), (expected.0, expected.2, expected.3), "{}", solver.name());
+        // Shares of a product are summed in another order.
+        assert!((report.products - expected.1).abs() < 1e-9, "{}: {} {}", solver.name(), report.products, expected.1);
+        assert_eq!(report.n_refinements, 0, "{}", solver.name());
         assert_eq!(g_rows, if solver.name().ends_with("cholesky") { whole } else { 0 });
-        if solver.name() == "low-rank" {
-            assert!(report.products > report.n_applies as f64);
-        }
         if ["southwell", "overshooting", "progressive"].contains(&solver.name()) {
             // n shots a band and iteration, each one column, except from a band with nothing left to shoot.
             assert!(columns <= whole * iterations && columns > n * iterations);
@@ -341,47 +427,53 @@ fn budgets_end_in_a_status_after_so_many_products() {
 }
 
 /// Albedos of every surface that is not black.
-const ALBEDOS: [f64; 5] = [0.3, 0.9, 0.99, 0.999, 0.999999];
+const ALBEDOS: [f64; 6] = [0.3, 0.9, 0.99, 0.999, 1.0 - 1e-6, 1.0 - 1e-9];
 
-/// What elimination with subtraction may lose: some ulp times a condition of up to 2 / (1 − albedo).
-fn agreement(albedo: f64) -> f64 {
-    AGREEMENT.max(8.0 * f64::EPSILON / (1.0 - albedo))
-}
-
-/// Every method × every scene × every albedo, against elimination without subtraction.
+/// Every method × every scene × every albedo, against elimination without subtraction: what a method says it has solved is right to ten
+/// digits, however little is absorbed, and what it has not solved lies in its bracket.
 #[test]
 fn all_solvers_agree_at_every_albedo_or_say_that_they_ran_out() {
     for case in coarse() {
         for albedo in ALBEDOS {
             let old = case.system.transport().scattering().values();
-            let new = Block::from_fn(
-                old.n_rows(),
-                old.n_columns(),
-                |i, band| {
-                    if old.get(i, band) > 0.0 { albedo } else { 0.0 }
-                },
-            );
-            let system = case.system.with_albedo(new);
+            let chosen = |i: usize, band: usize| if old.get(i, band) > 0.0 { albedo } else { 0.0 };
+            let system = case.system.with_albedo(Block::from_fn(old.n_rows(), old.n_columns(), chosen));
             let truth = solve(&Gth, system.equation()).radiance;
             // Slow methods need 1 / (1 − albedo) products; what they have by then lies in its bracket.
-            let products = if albedo > 0.9 { 100.0 } else { 500.0 };
+            let products = if albedo > 0.9 { 150.0 } else { 500.0 };
             for solver in solver::all(TOLERANCE) {
-                let place = format!("{} on {} at {albedo}", solver.name(), case.entry.name);
+                let place = format!("{} on {} at 1 - {:.0e}", solver.name(), case.entry.name, 1.0 - albedo);
                 let mut budget = Budget { products, observer: &mut () };
                 let answer = match solver.solve(system.equation(), &mut budget) {
                     Ok(answer) => answer,
+                    // Seven digits do not hold an absorption of 1e-9.
+                    Err(SolveError::Factor { .. } | SolveError::Diverged { .. })
+                        if solver.name() == "lu-f32" && albedo > 0.999_999 =>
+                    {
+                        continue;
+                    }
                     Err(error) => panic!("{place}: {error}"),
                 };
-                match answer.report.stop {
+                let report = &answer.report;
+                match report.stop {
                     Stop::Direct | Stop::Converged => {
                         let error = relative_max(&answer.radiance, &truth);
-                        assert!(error <= agreement(albedo), "{place}: {error:e}");
+                        assert!(
+                            error <= AGREEMENT,
+                            "{place}: {error:e} {:e} {}",
+                            report.true_residual,
+                            report.n_refinements
+                        );
+                        // Where every row absorbs alike the bracket says so, too, and it knows no other method.
+                        let width = report.bracket.as_ref().unwrap().relative_width();
+                        let is_alike = case.entry.name.starts_with("furnace");
+                        assert!(width <= AGREEMENT || !is_alike, "{place}: {width:e}");
                     }
-                    Stop::Budget => assert!(albedo > 0.9, "{place}: {:?}", answer.report.products),
+                    Stop::Budget => assert!(albedo > 0.9, "{place}: {:?}", report.products),
                     other => panic!("{place}: {other}"),
                 }
                 assert!(
-                    answer.report.stop != Stop::Budget || !["cg", "minres"].contains(&solver.name()),
+                    report.stop != Stop::Budget || !NEVER_SLOW.contains(&solver.name()),
                     "{place} needs more than {products} products"
                 );
                 let bracket = answer.report.bracket.unwrap();
@@ -396,12 +488,15 @@ fn all_solvers_agree_at_every_albedo_or_say_that_they_ran_out() {
     }
 }
 
+/// Methods that the albedo hardly slows.
+const NEVER_SLOW: [&str; 4] = ["cg", "minres", "deflated-cg", "deflated-gmres"];
+
 #[test]
 fn what_is_not_self_adjoint_is_solved_or_refused() {
     let case = scenes::find("cornell-box");
     let (system, _) = case.system.repaired_by(RepairMethod::Rows);
     let truth = solve(&Gth, system.equation()).radiance;
-    let needy = ["cholesky", "sparse-cholesky", "richardson", "chebyshev", "cg", "minres"];
+    let needy = ["cholesky", "sparse-cholesky", "richardson", "chebyshev", "cg", "minres", "deflated-cg"];
     for solver in solver::all(TOLERANCE) {
         match solver.solve(system.equation(), &mut ()) {
             Ok(answer) => {

@@ -4,7 +4,7 @@ use super::scenes;
 use etendue::linalg::{Block, Dense, Equation, eigenpairs};
 use etendue::solver::spectrum::{
     Eigen, TruncationBound, all_singular_values, condition, effective_rank, leading_eigenpairs,
-    leading_singular_values, prediction, spectral_radius,
+    leading_singular_values, prediction, rank_bounds, spectral_radius,
 };
 use etendue::solver::{Cg, Gth, Iteration, Neumann, Solver};
 use std::ops::ControlFlow;
@@ -88,6 +88,23 @@ fn singular_values_are_those_of_the_dense_matrix() {
     let radius = spectral_radius(equation, 1e-6, 500).unwrap().bands[0].low;
     assert!(condition(&of_equation) > (1.0 - of_transport[of_transport.len() - 1]) / (1.0 - radius) * 0.5);
     assert!(of_equation[0] <= 1.0 + of_transport[0] + 1e-12);
+}
+
+#[test]
+fn the_rank_is_bounded_by_random_vectors() {
+    for name in ["cornell-box", "two-rooms"] {
+        let case = scenes::find(name);
+        let equation = case.system.equation();
+        let [values, _] = all_singular_values(equation, 1).unwrap();
+        for tolerance in [0.5, 0.1, 0.02] {
+            let rank = effective_rank(&values, tolerance);
+            let bounds = rank_bounds(equation, 1, tolerance, 0x726b).unwrap();
+            assert!(bounds.low <= rank && rank <= bounds.high, "{name} {tolerance}: {rank} {bounds:?}");
+            // Singular values within a quarter of the tolerance may count or not: not many are.
+            assert!(bounds.high - bounds.low <= 4 + rank / 2, "{name} {tolerance}: {rank} {bounds:?}");
+            assert!(bounds.missing <= 0.3 * tolerance * values[0], "{name} {tolerance}: {bounds:?}");
+        }
+    }
 }
 
 #[test]

@@ -44,8 +44,10 @@ pub struct Exchange {
 }
 
 impl Default for Exchange {
+    /// What the command line computes where it is not told otherwise: everything by integrals, nothing by rays.
     fn default() -> Self {
-        Self { tolerance: 1e-10, occlusion: Occlusion::by_rays(64), seed: 0x00e7_e2d0_e000_0001, repair: true }
+        let occlusion = Occlusion::Exact { tolerance: 1e-7 };
+        Self { tolerance: 1e-10, occlusion, seed: 0x00e7_e2d0_e000_0001, repair: true }
     }
 }
 

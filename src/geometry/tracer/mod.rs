@@ -9,6 +9,7 @@
 mod block;
 mod boxes;
 mod eight;
+mod joined;
 mod local;
 mod shape;
 mod supporting;
@@ -19,9 +20,11 @@ use super::{Polygon, Ray, Vec3, plane::group_by_plane};
 use block::Block;
 use boxes::Boxes;
 use glam::Vec3A;
+use joined::joined;
 use local::{Local, Reach};
 use obvhs::aabb::Aabb;
 use shape::{Probe, Shape};
+use std::borrow::Cow;
 use supporting::supporting;
 use tree::Tree;
 use walk::{Any, Closest, Near};
@@ -58,33 +61,37 @@ impl Tracer {
     /// Builds the tree. Cost O(n log n).
     pub fn new(polygons: &[&Polygon]) -> Self {
         let planes = group_by_plane(polygons);
-        let everything: Vec<usize> = (0..polygons.len()).collect();
-        Self::over(polygons, planes, &everything)
+        let everything: Vec<(usize, Cow<Polygon>)> =
+            polygons.iter().enumerate().map(|(id, polygon)| (id, Cow::Borrowed(*polygon))).collect();
+        Self::over(planes, &everything)
     }
 
     /// A tracer over those polygons alone that can block a segment between two points of the scene: a polygon with all vertices
-    /// of the scene on one side of its plane (a wall of a convex room) never does. Polygons keep their numbers.
+    /// of the scene on one side of its plane (a wall of a convex room) never does. Those that make a convex polygon together are one, under
+    /// the number of the first of them; others keep their numbers.
     pub fn occluders(polygons: &[&Polygon]) -> Self {
         let planes = group_by_plane(polygons);
         let is_supporting = supporting(polygons, &planes);
         let blocking: Vec<usize> = (0..polygons.len()).filter(|&i| !is_supporting[planes[i] as usize]).collect();
-        Self::over(polygons, planes, &blocking)
+        let blocking = joined(polygons, &planes, &blocking);
+        Self::over(planes, &blocking)
     }
 
-    fn over(polygons: &[&Polygon], planes: Vec<u32>, chosen: &[usize]) -> Self {
-        let boxes = Boxes::around(chosen.iter().map(|&i| polygons[i]));
+    /// A tracer over these polygons, each with its number; `planes` are those of all numbers.
+    fn over(planes: Vec<u32>, chosen: &[(usize, Cow<Polygon>)]) -> Self {
+        let boxes = Boxes::around(chosen.iter().map(|(_, polygon)| polygon.as_ref()));
         let local = boxes.local;
 
         // Lay the polygons out in the order of the blocks.
-        let mut order: Vec<usize> = Vec::with_capacity(chosen.len());
+        let mut order: Vec<(usize, &Polygon)> = Vec::with_capacity(chosen.len());
         let block = |primitives: &[u32]| {
             let first = order.len() as u32;
-            order.extend(primitives.iter().map(|&k| chosen[k as usize]));
+            order.extend(primitives.iter().map(|&k| (chosen[k as usize].0, chosen[k as usize].1.as_ref())));
             Block::new(
                 first,
-                order[first as usize..].iter().map(|&id| {
-                    let corners = polygons[id].vertices().iter().map(|v| local.point(*v)).collect();
-                    (corners, polygons[id].normal(), planes[id])
+                order[first as usize..].iter().map(|&(id, polygon)| {
+                    let corners = polygon.vertices().iter().map(|v| local.point(*v)).collect();
+                    (corners, polygon.normal(), planes[id])
                 }),
             )
         };
@@ -93,14 +100,14 @@ impl Tracer {
         let mut corners = Vec::new();
         let shapes = order
             .iter()
-            .map(|&id| {
-                let vertices = polygons[id].vertices();
+            .map(|&(id, polygon)| {
+                let vertices = polygon.vertices();
                 let first = corners.len() as u32;
                 corners.extend_from_slice(vertices);
                 Shape {
                     id: id as u32,
                     plane: planes[id],
-                    normal: polygons[id].normal(),
+                    normal: polygon.normal(),
                     anchor: vertices[0],
                     first,
                     n_corners: vertices.len() as u32,
@@ -150,7 +157,7 @@ impl Tracer {
     }
 
     /// Unit normal of a polygon, by handle.
-    pub(super) fn normal_of(&self, handle: u32) -> Vec3 {
+    pub fn normal_of(&self, handle: u32) -> Vec3 {
         self.shapes[handle as usize].normal
     }
 
@@ -159,8 +166,8 @@ impl Tracer {
         self.shapes[handle as usize].plane
     }
 
-    /// Number of the plane of polygon `id` of the list the tracer was made from.
-    pub(super) fn plane_number(&self, id: usize) -> u32 {
+    /// Number of the plane of polygon `id` of the list the tracer was made from, by [`group_by_plane`](super::group_by_plane).
+    pub fn plane_number(&self, id: usize) -> u32 {
         self.planes[id]
     }
 

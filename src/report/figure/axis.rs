@@ -1,6 +1,6 @@
 //! Where a number lies along an axis, and which numbers are written beside it.
 
-use crate::report::number::{count, power_of_ten, scientific, significant};
+use crate::report::number::{count, power_of_ten, scientific, significant, trimmed};
 
 /// Positive numbers below this are drawn at the foot of a logarithmic axis: far below what rounding leaves of 1.
 pub const SMALLEST_SHOWN: f64 = 1e-17;
@@ -12,6 +12,8 @@ const MOST_LABELS: i32 = 9;
 #[derive(Clone, Debug)]
 pub struct Axis {
     logarithmic: bool,
+    /// Whether numbers fall along the axis.
+    reversed: bool,
     /// In the drawn coordinate: the number itself or its decimal logarithm.
     low: f64,
     high: f64,
@@ -43,17 +45,17 @@ impl Axis {
         let high = if high > 1e-300 { high.min(1e300) } else { 1.0 };
         let step = nice_step(high / 6.0);
         let labels = (0..=(high / step + 1e-9).floor() as u32).map(|k| f64::from(k) * step);
-        let labels = labels.map(|v| (v, if step >= 1.0 { count(v as u64) } else { significant(v, 2) })).collect();
-        Self { logarithmic: false, low: 0.0, high: 1.03 * high, labels, ticks: Vec::new() }
+        let labels = labels.map(|v| (v, if step >= 1.0 { count(v as u64) } else { trimmed(v, 2) })).collect();
+        Self { logarithmic: false, reversed: false, low: 0.0, high: 1.03 * high, labels, ticks: Vec::new() }
     }
 
     /// Between two numbers of either sign, marked at multiples of 1, 2 or 5.
     pub fn linear_between(low: f64, high: f64) -> Self {
         let step = nice_step((high - low) / 6.0);
         let multiples = (low / step).ceil() as i64..=(high / step).floor() as i64;
-        let name = |v: f64| if v < 0.0 { format!("−{}", significant(-v, 2)) } else { significant(v, 2) };
+        let name = |v: f64| if v < 0.0 { format!("−{}", trimmed(-v, 2)) } else { trimmed(v, 2) };
         let labels = multiples.map(|k| k as f64 * step).map(|v| (v, name(v))).collect();
-        Self { logarithmic: false, low, high, labels, ticks: Vec::new() }
+        Self { logarithmic: false, reversed: false, low, high, labels, ticks: Vec::new() }
     }
 
     fn log_between(low: f64, high: f64) -> Self {
@@ -85,12 +87,23 @@ impl Axis {
             labels.extend(digits.filter(inside).map(|v| (v, if plain { significant(v, 1) } else { scientific(v, 1) })));
             labels.sort_by(|a, b| a.0.total_cmp(&b.0));
         }
-        Self { logarithmic: true, low, high, labels, ticks }
+        Self { logarithmic: true, reversed: false, low, high, labels, ticks }
     }
 
     /// Marks these numbers, and no others.
     pub fn with_labels(self, labels: Vec<(f64, String)>) -> Self {
         Self { labels, ticks: Vec::new(), ..self }
+    }
+
+    /// A logarithmic axis that ends at this number, which must be above where it begins.
+    pub fn up_to(self, high: f64) -> Self {
+        let (low, high) = (self.low, high.log10());
+        if high > low && high.is_finite() { Self::log_between(low, high) } else { self }
+    }
+
+    /// The same, the largest number first.
+    pub fn reversed(self) -> Self {
+        Self { reversed: !self.reversed, ..self }
     }
 
     /// Where `value` lies between the two ends, 0 to 1; clamped there. `None` for NaN and infinities.
@@ -99,10 +112,11 @@ impl Axis {
             return None;
         }
         let drawn = if self.logarithmic { value.max(1e-300).log10() } else { value };
-        Some(((drawn - self.low) / (self.high - self.low)).clamp(0.0, 1.0))
+        let fraction = ((drawn - self.low) / (self.high - self.low)).clamp(0.0, 1.0);
+        Some(if self.reversed { 1.0 - fraction } else { fraction })
     }
 
-    /// The two ends.
+    /// The two ends, the smaller first.
     pub fn ends(&self) -> (f64, f64) {
         if self.logarithmic { (10_f64.powf(self.low), 10_f64.powf(self.high)) } else { (self.low, self.high) }
     }
@@ -147,6 +161,15 @@ mod tests {
         assert!(axis.clips(0.0) && axis.clips(1e-18) && !axis.clips(1e-16));
         assert_eq!(axis.fraction(0.0), Some(0.0));
         assert_eq!(axis.fraction(f64::NAN), None);
+    }
+
+    #[test]
+    fn a_reversed_axis_begins_with_the_largest_and_one_may_end_where_it_is_told() {
+        let axis = Axis::log_decades([1e-3, 1.0]).reversed();
+        assert!((axis.fraction(1.0).unwrap(), axis.fraction(1e-3).unwrap()) == (0.0, 1.0));
+        assert_eq!(Axis::log_tight([2.0, 50.0]).up_to(1000.0).fraction(1000.0), Some(1.0));
+        // What would end before it begins stays as it is.
+        assert_eq!(Axis::log_decades([10.0, 100.0]).up_to(1.0).fraction(100.0), Some(1.0));
     }
 
     #[test]

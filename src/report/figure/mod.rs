@@ -1,7 +1,9 @@
 //! Figures worth a paper: each takes plain data, fills a sheet, and becomes SVG and PNG through the same strokes.
 
+mod albedos;
 mod axis;
 mod convergence;
+mod families;
 mod monte_carlo;
 mod paint;
 mod palette;
@@ -12,6 +14,7 @@ mod spectrum;
 mod strip;
 mod truncation;
 
+pub use albedos::albedos;
 pub use convergence::convergence;
 pub use monte_carlo::monte_carlo;
 pub use paint::{to_png, to_svg};

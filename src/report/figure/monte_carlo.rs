@@ -36,9 +36,10 @@ pub fn monte_carlo(estimators: &[EstimatorRun]) -> Sheet {
         return sheet;
     }
 
-    // A run is a predicted and a measured line.
+    // A run is a predicted and a measured line; samples none of which scored predict nothing.
     let predicted = |run: &EstimatorRun| {
-        run.points.iter().map(|p| (p.samples_per_bundle as f64, p.standard_error)).collect::<Vec<_>>()
+        let known = |e: f64| if e > 0.0 { e } else { f64::NAN };
+        run.points.iter().map(|p| (p.samples_per_bundle as f64, known(p.standard_error))).collect::<Vec<_>>()
     };
     let measured =
         |run: &EstimatorRun| run.points.iter().map(|p| (p.samples_per_bundle as f64, p.error)).collect::<Vec<_>>();

@@ -54,6 +54,25 @@ impl Look {
         }
     }
 
+    /// The same in another colour.
+    pub fn in_colour(self, colour: Colour) -> Self {
+        Self { colour, ..self }
+    }
+
+    /// A marker in this shape, empty for what is below zero.
+    pub fn signed_marker(&self, sheet: &mut Sheet, at: Point, is_negative: bool) {
+        Self { open: is_negative, ..*self }.marker(sheet, at);
+    }
+
+    /// An arrow head that points up from an empty marker: the value is larger, nobody knows by how much.
+    pub fn unfinished(&self, sheet: &mut Sheet, (x, y): Point) {
+        self.shape_at(sheet, (x, y), 4.0, self.colour);
+        self.shape_at(sheet, (x, y), 2.6, WHITE);
+        let x = x + 10.0;
+        sheet.line(vec![(x, y + 4.5), (x, y - 2.0)], Stroke::solid(self.colour, 1.25));
+        sheet.area(vec![(x - 3.0, y - 0.5), (x + 3.0, y - 0.5), (x, y - 5.5)], self.colour, 1.0);
+    }
+
     fn shape_at(&self, sheet: &mut Sheet, (x, y): Point, radius: f64, colour: Colour) {
         let corners: &[Point] = match self.shape {
             Shape::Circle => return sheet.dot((x, y), radius, colour),

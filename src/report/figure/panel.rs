@@ -33,6 +33,11 @@ impl Panel {
     /// Rules, ticks, labels and the names of the axes: the upright one's above its top end, so that nobody tilts a head.
     /// Without `y_labels` the upright axis stays bare (it shares its neighbour's).
     pub fn draw_axes(&self, sheet: &mut Sheet, x_name: &str, y_name: &str, y_labels: bool) {
+        self.draw_axes_under(sheet, x_name, y_name, y_labels, self.top);
+    }
+
+    /// The same where something above the panel, up to `head`, belongs to it.
+    pub fn draw_axes_under(&self, sheet: &mut Sheet, x_name: &str, y_name: &str, y_labels: bool, head: f64) {
         // Rule the panel at the labelled numbers.
         for (value, name) in &self.y.labels {
             let Some((_, y)) = self.place(self.x.ends().0, *value) else { continue };
@@ -65,7 +70,7 @@ impl Panel {
         // Name both.
         sheet.words((0.5 * (self.left + self.right), self.name_height()), x_name, NORMAL, INK, Anchor::Middle);
         let start = if y_labels { self.left - 36.0 } else { self.left };
-        sheet.bold_words((start.max(8.0), self.top - 19.0), y_name, NORMAL, INK, Anchor::Start);
+        sheet.bold_words((start.max(8.0), head - 19.0), y_name, NORMAL, INK, Anchor::Start);
     }
 
     /// A line through the points, broken where a number is missing; points closer than half a pixel are merged.

@@ -30,13 +30,14 @@ pub enum Column {
 
 /// A table whose cells are given as text.
 pub struct Table {
-    columns: Vec<(&'static str, Column)>,
+    columns: Vec<(String, Column)>,
     rows: String,
 }
 
 impl Table {
-    pub fn new(columns: &[(&'static str, Column)]) -> Self {
-        Self { columns: columns.to_vec(), rows: String::new() }
+    pub fn new(columns: &[(&str, Column)]) -> Self {
+        let columns = columns.iter().map(|(name, column)| ((*name).to_owned(), *column)).collect();
+        Self { columns, rows: String::new() }
     }
 
     /// Appends a row; its first cell is its heading.

@@ -81,6 +81,7 @@ fn repairs(outcome: &StudyOutcome) -> String {
     }
     format!("<h3>Ways of closing T</h3>\n{}", table.html(
         "Every repair starts from the same unrepaired T, and the laws are measured after it. Change of L: max |L − Lraw| / max |L|; a repair \
-         that changes L much repairs an exchange that is not good enough. Symmetric scaling is the default: it keeps every law by construction.",
+         that changes L much repairs an exchange that is not good enough. Symmetric scaling is the default: it keeps every law by \
+         construction. All are solved by Gauss–Seidel to the tolerance of the study, which is as near as two answers can be told apart.",
     ))
 }

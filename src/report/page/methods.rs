@@ -18,6 +18,7 @@ pub fn solvers(outcome: &StudyOutcome, on_page: &FigureOnPage) -> String {
         ("true residual", Numbers),
         ("error", Numbers),
         ("error bound", Numbers),
+        ("duality", Numbers),
     ]);
     for run in &outcome.solvers {
         let reference = run.solver == outcome.reference_solver;
@@ -32,6 +33,7 @@ pub fn solvers(outcome: &StudyOutcome, on_page: &FigureOnPage) -> String {
             &scientific(run.true_residual, 2),
             &error,
             &bound,
+            &run.adjoint.as_ref().map_or("—".into(), |adjoint| scientific(adjoint.difference, 2)),
         ]);
     }
     let lead = format!(
@@ -41,13 +43,16 @@ pub fn solvers(outcome: &StudyOutcome, on_page: &FigureOnPage) -> String {
     );
     let shown = figure(
         on_page,
-        "Error and residual of every iterative solver against products with K, logarithmic",
-        "Error ‖L − L*‖∞ / ‖L*‖∞ against the direct solution L*, and residual ‖E + K L − L‖∞ / ‖E‖∞ against work, in products with K.",
+        "Error of every iterative solver against products with K and against seconds, logarithmic",
+        "Error ‖L − L*‖∞ / ‖L*‖∞ against the direct solution L*, over work in products with K and over wall time; dashed, where there is a \
+         theory, what the leading eigenvalues of K foretold. Grey: the methods of the other panels.",
     );
     let refusals = outcome.solvers.iter().filter_map(|run| run.refusal.as_ref());
     let refusals: String = refusals.map(|refusal| format!(" Refused: {refusal}.")).collect();
     let caption = format!(
-        "Every solver; work in products with K: entries touched over entries of K. Residual, error and bound are relative.{refusals}"
+        "Every solver; work in products with K: entries touched over entries of K. Residual, error and bound are relative. \
+         Duality: how far ⟨W, L⟩ and ⟨E, J⟩ are apart, J being the importance of W ({}) by the same method.{refusals}",
+        outcome.duality.sensor
     );
     section("solvers", "Solvers", &lead, &(shown + &table.html(&caption)))
 }

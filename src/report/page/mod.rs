@@ -1,5 +1,6 @@
 //! One self-contained page: no scripts, nothing fetched, figures and pictures inside.
 
+mod albedo;
 mod markup;
 mod matrices;
 mod methods;
@@ -22,24 +23,35 @@ pub struct FigureOnPage {
     pub svg: String,
 }
 
+/// All figures of a page.
+pub struct FiguresOnPage {
+    pub convergence: FigureOnPage,
+    /// Where other albedos were looked at.
+    pub albedos: Option<FigureOnPage>,
+    pub truncation: FigureOnPage,
+    pub monte_carlo: FigureOnPage,
+    pub refinement: FigureOnPage,
+}
+
 const STYLE: &str = include_str!("style.css");
 
-/// The page as HTML. `figures`: convergence, truncation, Monte Carlo, refinement. `files` are offered for download.
+/// The page as HTML. `files` are offered for download.
 pub fn page(
     outcome: &StudyOutcome,
-    figures: &[FigureOnPage; 4],
+    figures: &FiguresOnPage,
     shown: Option<&PicturesOnPage>,
     files: &[Artifact],
 ) -> String {
-    let [convergence, truncation, monte_carlo, refined] = figures;
+    let albedos = outcome.albedos.as_ref().zip(figures.albedos.as_ref());
     let title = escape(&outcome.scene);
     let body = [
         header(outcome),
         shown.map(|shown| pictures(outcome, shown)).unwrap_or_default(),
-        methods::solvers(outcome, convergence),
-        methods::truncation(outcome, truncation),
-        methods::estimators(outcome, monte_carlo),
-        refinement::refinement(outcome, refined),
+        methods::solvers(outcome, &figures.convergence),
+        albedos.map(|(study, figure)| albedo::albedos(study, figure)).unwrap_or_default(),
+        methods::truncation(outcome, &figures.truncation),
+        methods::estimators(outcome, &figures.monte_carlo),
+        refinement::refinement(outcome, &figures.refinement),
         matrices::matrices(outcome),
         origin::stages(outcome),
         origin::provenance(outcome),

@@ -3,7 +3,7 @@
 use super::markup::{Column, Table, section};
 use super::verdict::percent;
 use super::{FigureOnPage, figure};
-use crate::report::number::{significant, with_error};
+use crate::report::number::{count, significant, with_error};
 use crate::study::StudyOutcome;
 
 /// Refinement figure and the means of every surface at the finest level.
@@ -28,15 +28,28 @@ pub fn refinement(outcome: &StudyOutcome, on_page: &FigureOnPage) -> String {
             &mean.band,
             &significant(mean.matrix, 5),
             &with_error(mean.path_tracer, mean.standard_error),
-            &percent((mean.matrix - mean.path_tracer) / mean.path_tracer),
+            &if mean.is_comparable {
+                percent((mean.matrix - mean.path_tracer) / mean.path_tracer)
+            } else {
+                "too few paths".into()
+            },
             &significant(mean.discretisation_error, 2),
         ]);
     }
+    let n_dark = study.surfaces.iter().filter(|mean| !mean.is_comparable).count();
+    let left_out = match n_dark {
+        0 => String::new(),
+        n => format!(" Of {} means {} rest on too few paths to be compared.", study.surfaces.len(), count(n as u64)),
+    };
     let agreement = if study.agrees { "agrees" } else { "does not agree" };
+    let order = if study.observed_order.is_finite() {
+        format!(", at observed order {}", with_error(study.observed_order, study.order_standard_error))
+    } else {
+        "; how fast, the path tracer's noise hides".to_string()
+    };
     let lead = format!(
-        "Finer patches bring the discrete truth to the continuous one, at observed order {}. At the finest level every surface's mean {agreement} \
-         with the path tracer's within discretisation plus statistical error.",
-        with_error(study.observed_order, study.order_standard_error)
+        "Finer patches bring the discrete truth to the continuous one{order}. At the finest level every surface's mean {agreement} \
+         with the path tracer's within discretisation plus statistical error.{left_out}"
     );
     let shown = figure(
         on_page,

@@ -14,8 +14,9 @@
 //! (I − K) P (β 1 + d) = β a + P d − B d.
 
 use super::super::SolveError;
+use super::levels::Levels;
 use super::near::{self, Near};
-use crate::linalg::{Aggregation, Block, Dense, Equation, LossFactor, SelfAdjoint, Unknown};
+use crate::linalg::{Aggregation, Block, Dense, Equation, FactorError, LossFactor, SelfAdjoint, Unknown};
 use rayon::prelude::*;
 
 /// Rows that one task reads.
@@ -45,13 +46,48 @@ pub fn weights(form: SelfAdjoint<'_>, n_bands: usize) -> Option<Block> {
     is_diagonal.then(|| Block::from_fn(n, n_bands, weight))
 }
 
+/// How a coarse equation is to be answered.
+#[derive(Clone, Copy)]
+pub(super) enum Wanted<'a> {
+    /// By elimination, ⅓ m³.
+    Factor,
+    /// By cycles over coarser levels of the same unknowns, finest first, each of which is asked so many times.
+    Levels { coarser: &'a [Aggregation], n_visits: usize },
+}
+
+/// What answers it.
+enum Inverse {
+    Factor(LossFactor),
+    Levels(Levels),
+}
+
+impl Inverse {
+    fn new(
+        wanted: Wanted<'_>,
+        aggregation: &Aggregation,
+        flows: Dense,
+        losses: Vec<f64>,
+        weight: &[f64],
+    ) -> Result<Self, FactorError> {
+        match wanted {
+            Wanted::Factor => Ok(Self::Factor(LossFactor::new(flows, losses)?)),
+            Wanted::Levels { coarser, n_visits } => {
+                let mut gathered = vec![0.0; losses.len()];
+                aggregation.groups().zip(weight).for_each(|(group, w)| gathered[group] += w);
+                let onto: Vec<Aggregation> = coarser.iter().filter_map(|level| aggregation.onto(level)).collect();
+                Ok(Self::Levels(Levels::new(flows, losses, gathered, &onto, n_visits)?))
+            }
+        }
+    }
+}
+
 /// One band of a coarse space.
 struct Band {
     /// B, n × m.
     spread: Dense,
     /// a, n: what (I − K) P makes of 1 where P is one; where P is zero, minus what K P makes of 1.
     loss: Vec<f64>,
-    factor: LossFactor,
+    inverse: Inverse,
     near: Near,
 }
 
@@ -71,6 +107,7 @@ impl Coarse {
         method: &'static str,
         equation: Equation<'_>,
         aggregation: Aggregation,
+        wanted: Wanted<'_>,
         weights: Block,
         sources: &[&Block],
         images: &mut [Block],
@@ -138,9 +175,9 @@ impl Coarse {
                     flows.row_mut(group).iter_mut().zip(spread.row_slice(i)).for_each(|(f, b)| *f += w * b);
                 }
             }
-            let factor =
-                LossFactor::new(flows, losses).map_err(|source| SolveError::Factor { method, band, source })?;
-            bands.push(Band { spread, loss, factor, near: Near::from_rows(&near) });
+            let inverse = Inverse::new(wanted, &aggregation, flows, losses, weight)
+                .map_err(|source| SolveError::Factor { method, band, source })?;
+            bands.push(Band { spread, loss, inverse, near: Near::from_rows(&near) });
         }
         Ok(Self { aggregation, weights, bands })
     }
@@ -150,16 +187,40 @@ impl Coarse {
         self.aggregation.n_groups()
     }
 
-    /// Work of forming the coarse equation in products: K once, and the elimination's ⅓ m³ multiplications.
+    /// Work of forming the coarse equation in products: K once, the elimination's ⅓ m³ multiplications, and what coarser levels read.
     pub fn setup_work(&self) -> f64 {
-        let (n, m) = (self.aggregation.n_unknowns() as f64, self.n_groups() as f64);
-        1.0 + m * m * m / (3.0 * n * n)
+        1.0 + self.share(|inverse, m| match inverse {
+            Inverse::Factor(_) => m * m * m / 3.0,
+            Inverse::Levels(levels) => levels.n_formed(),
+        })
     }
 
     /// Work of one pass over B and one coarse solve, in products.
     pub fn pass_work(&self) -> f64 {
-        let ratio = self.n_groups() as f64 / self.aggregation.n_unknowns() as f64;
-        ratio + ratio * ratio
+        self.spread_work()
+            + self.share(|inverse, m| match inverse {
+                Inverse::Factor(_) => m * m,
+                Inverse::Levels(levels) => levels.n_read(),
+            })
+    }
+
+    /// Work of one pass over B and one [`Coarse::solve_first`], in products.
+    pub fn first_pass_work(&self) -> f64 {
+        self.spread_work()
+            + self.share(|inverse, m| match inverse {
+                Inverse::Factor(_) => m * m,
+                Inverse::Levels(levels) => levels.n_read_nested(),
+            })
+    }
+
+    fn spread_work(&self) -> f64 {
+        self.n_groups() as f64 / self.aggregation.n_unknowns() as f64
+    }
+
+    /// Entries over those of K; the bands' coarse equations are of one size.
+    fn share(&self, entries: impl Fn(&Inverse, f64) -> f64) -> f64 {
+        let (n, m) = (self.aggregation.n_unknowns() as f64, self.n_groups() as f64);
+        self.bands.first().map_or(0.0, |band| entries(&band.inverse, m)) / (n * n)
     }
 
     pub fn weight(&self, band: usize) -> &[f64] {
@@ -196,9 +257,20 @@ impl Coarse {
         self.bands.iter().map(|band| band.near.n_read()).max().unwrap_or(0) as f64 / (n * n)
     }
 
-    /// q ← d of C (β 1 + d) = q, and β.
-    pub fn solve(&self, band: usize, q: &mut [f64]) -> f64 {
-        self.bands[band].factor.solve(q)
+    /// q ← d of C (β 1 + d) = q, and β; by cycles about so.
+    pub fn solve(&mut self, band: usize, q: &mut [f64]) -> f64 {
+        match &mut self.bands[band].inverse {
+            Inverse::Factor(factor) => factor.solve(q),
+            Inverse::Levels(levels) => levels.solve(q),
+        }
+    }
+
+    /// The same where nothing is known of the answer yet: cycles begin on the coarsest level.
+    pub fn solve_first(&mut self, band: usize, q: &mut [f64]) -> f64 {
+        match &mut self.bands[band].inverse {
+            Inverse::Factor(factor) => factor.solve(q),
+            Inverse::Levels(levels) => levels.solve_nested(q),
+        }
     }
 
     /// out ← K P (β 1 + d) of one band. One pass over B.

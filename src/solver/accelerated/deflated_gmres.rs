@@ -9,9 +9,11 @@
 //! costs no product. Where nearly nothing is absorbed the constant in M⁻¹ x is large and takes digits with it: 1e-16 over the absorption
 //! of the residual's own scale. Source: Atkinson (1976), §5.3; as a preconditioner, Saad (2003), §9.3.
 
+use super::super::krylov::minimise;
+use super::super::monitor::Monitor;
 use super::super::report::Work;
-use super::super::{Gmres, Observer, Preconditioner, Prepared, Solution, SolveError, Solver};
-use super::coarse::Coarse;
+use super::super::{Attempt, Observer, Preconditioner, Prepared, SolveError, Solver};
+use super::coarse::{Coarse, Wanted};
 use super::two_grid::{level, weights_or_ones};
 use crate::linalg::{Block, Equation};
 
@@ -39,12 +41,14 @@ impl Solver for DeflatedGmres {
         "deflated-gmres"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let space = CoarseSpace { n_groups: self.n_groups };
-        let gmres = Gmres { tolerance: self.tolerance, restart: RESTART, preconditioner: Some(&space) };
-        let mut solution = gmres.solve(equation, observer)?;
-        solution.report.method = self.name();
-        Ok(solution)
+        let monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
+        minimise(self.name(), equation, self.tolerance, RESTART, Some(&space), monitor)
     }
 }
 
@@ -56,7 +60,8 @@ impl Preconditioner for CoarseSpace {
         work: &mut Work,
     ) -> Result<Box<dyn Prepared + 'a>, SolveError> {
         let aggregation = level(equation, self.n_groups);
-        let coarse = Coarse::new(method, equation, aggregation, weights_or_ones(equation), &[], &mut [])?;
+        let weights = weights_or_ones(equation);
+        let coarse = Coarse::new(method, equation, aggregation, Wanted::Factor, weights, &[], &mut [])?;
         work.products += coarse.setup_work();
         let gathered = vec![0.0; coarse.n_groups()];
         Ok(Box::new(Ready { coarse, gathered }))

@@ -1,14 +1,14 @@
 //! What the strongest entries of K do on their own: patches that share an edge, which no coarse space sees.
 //!
 //! ```text
-//! z = r + N r + N² r + N³ r ≈ (I − N)⁻¹ r,      Nᵢⱼ = Kᵢⱼ where (wᵢ/wⱼ)^½ Kᵢⱼ is above 6/n, else 0
+//! z = r + N r + N² r + N³ r ≈ (I − N)⁻¹ r,      Nᵢⱼ = Kᵢⱼ where (wᵢ/wⱼ)^½ Kᵢⱼ is above 4/n, else 0
 //! ```
 //!
 //! Along a concave edge the pairs of patches that touch exchange as much on any mesh, so that a tile of patches never stands for them.
 //! N is as self-adjoint as K, and 1 + λ + λ² + λ³ > 0 for |λ| < 1, so that z is fit to precondition conjugate gradients.
 
 /// An entry is strong from so many times 1/n on: what a row would hold if it went everywhere alike.
-pub(super) const STRONG: f64 = 6.0;
+pub(super) const STRONG: f64 = 4.0;
 
 /// Powers of N in the series.
 const N_POWERS: usize = 3;

@@ -14,9 +14,9 @@
 //! (1960); Atkinson (1976), §5.3; as an iterated Galerkin correction, Hackbusch (1985), §16.
 
 use super::super::monitor::Monitor;
-use super::super::report::{conclude, relative_residual};
-use super::super::{Observer, Solution, SolveError, Solver};
-use super::coarse::{self, Coarse};
+use super::super::report::relative_residual;
+use super::super::{Attempt, Observer, SolveError, Solver};
+use super::coarse::{self, Coarse, Wanted};
 use super::shifted::Shifted;
 use crate::linalg::{Aggregation, Block, Equation, max_abs};
 
@@ -45,7 +45,7 @@ impl TwoGrid {
     pub fn factor(&self, equation: Equation<'_>, n_products: usize) -> Result<Vec<f64>, SolveError> {
         let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
         let (aggregation, weights) = (level(equation, self.n_groups), weights_or_ones(equation));
-        let coarse = Coarse::new(self.name(), equation, aggregation, weights, &[], &mut [])?;
+        let mut coarse = Coarse::new(self.name(), equation, aggregation, Wanted::Factor, weights, &[], &mut [])?;
         let mut residual = Block::from_fn(n, n_bands, |i, _| (1.618_033_988_749_895 * (i as f64 + 1.0)).sin());
         let (mut step, mut next) = (Block::zeros(n, n_bands), Block::zeros(n, n_bands));
         let mut gathered = vec![0.0; coarse.n_groups()];
@@ -76,12 +76,17 @@ impl Solver for TwoGrid {
         "two-grid"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         iterate(
             Monitor::new(self.name(), equation, self.tolerance, observer),
             self.name(),
             equation,
             level(equation, self.n_groups),
+            Wanted::Factor,
             Smoother::Near,
         )
     }
@@ -92,21 +97,31 @@ impl Solver for Perron {
         "perron"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         iterate(
             Monitor::new(self.name(), equation, self.tolerance, observer),
             self.name(),
             equation,
             level(equation, Some(1)),
+            Wanted::Factor,
             Smoother::Bounce,
         )
     }
 }
 
+/// n^⅔ groups, whose elimination costs a third of a product.
+pub(super) fn cheap_to_eliminate(n: usize) -> usize {
+    (n as f64).powf(2.0 / 3.0) as usize
+}
+
 /// The finest level of the hierarchy with no more groups than wanted; everything in one group where there is none.
 pub(super) fn level(equation: Equation<'_>, n_groups: Option<usize>) -> Aggregation {
     let n = equation.n_unknowns();
-    let most = n_groups.unwrap_or((n as f64).powf(2.0 / 3.0) as usize).max(1);
+    let most = n_groups.unwrap_or(cheap_to_eliminate(n)).max(1);
     let found = equation.hierarchy.and_then(|hierarchy| hierarchy.finest_within(most));
     found.cloned().unwrap_or_else(|| Aggregation::whole(n))
 }
@@ -120,7 +135,7 @@ pub(super) fn weights_or_ones(equation: Equation<'_>) -> Block {
 
 /// What a residual is turned into before it bounces.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Smoother {
+pub(super) enum Smoother {
     /// Itself.
     Bounce,
     /// r + N r + N² r + N³ r.
@@ -148,18 +163,20 @@ fn smooth(
     if smoother == Smoother::Near { coarse.near_work() } else { 0.0 }
 }
 
-fn iterate(
+/// The iteration of this family, whatever answers its coarse equation.
+pub(super) fn iterate<'a>(
     mut monitor: Monitor<'_>,
     method: &'static str,
-    equation: Equation<'_>,
+    equation: Equation<'a>,
     aggregation: Aggregation,
+    wanted: Wanted<'_>,
     smoother: Smoother,
-) -> Result<Solution, SolveError> {
+) -> Result<Attempt<'a>, SolveError> {
     // Read K once: the coarse equation, and the first bounce.
     let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
     let mut first = [Block::zeros(n, n_bands)];
     let weights = weights_or_ones(equation);
-    let coarse = Coarse::new(method, equation, aggregation, weights, &[equation.emission], &mut first)?;
+    let mut coarse = Coarse::new(method, equation, aggregation, wanted, weights, &[equation.emission], &mut first)?;
     monitor.work.products += coarse.setup_work();
     let [mut residual] = first;
 
@@ -167,17 +184,22 @@ fn iterate(
     let (mut radiance, mut next) = (equation.emission.clone(), Block::zeros(n, n_bands));
     let mut step = Block::zeros(n, n_bands);
     let mut gathered = vec![0.0; coarse.n_groups()];
+    let mut is_first = true;
     let stop = loop {
         // Take what is left of the coarse space out of the residual.
         for band in 0..n_bands {
             coarse.gather(band, residual.column(band), &mut gathered);
-            let constant = coarse.solve(band, &mut gathered);
+            let constant =
+                if is_first { coarse.solve_first(band, &mut gathered) } else { coarse.solve(band, &mut gathered) };
             field.constants[band] += constant;
             coarse.prolong(band, &gathered, field.rest.column_mut(band));
             coarse.correct(band, constant, &gathered, residual.column_mut(band));
         }
-        monitor.work.products += coarse.pass_work();
-        field.write(&coarse, &mut radiance);
+        monitor.work.products += if is_first { coarse.first_pass_work() } else { coarse.pass_work() };
+        is_first = false;
+
+        // Show one bounce more, which the residual is: what that leaves is no larger where no row gains.
+        field.write(&coarse, Some(&residual), &mut radiance);
         if let Some(stop) = monitor.check(relative_residual(equation.emission, &residual), &radiance)? {
             break stop;
         }
@@ -187,5 +209,5 @@ fn iterate(
         monitor.count_applies(1);
         field.rest.add_scaled(1.0, &step);
     };
-    conclude(method, equation, radiance, stop, monitor.work, monitor.history)
+    Ok(Attempt::ended(field.doubled(&coarse, Some(&residual)), stop, monitor))
 }

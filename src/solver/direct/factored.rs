@@ -1,8 +1,9 @@
 //! Factored once, solved for many right-hand sides.
 
 use crate::linalg::{Block, Dense, Equation, FactorError, Factorization};
-use crate::solver::report::{Work, conclude};
-use crate::solver::{Solution, SolveError, Stop};
+use crate::solver::attempt::Again;
+use crate::solver::report::Work;
+use crate::solver::{Attempt, SolveError, refine};
 
 /// What one band of an equation is factored into, and the entries stored if they were fewer than all.
 pub(super) type Band = (Box<dyn Factorization>, Option<usize>);
@@ -76,23 +77,41 @@ impl Factored {
     }
 }
 
-/// Factors and solves band after band, keeping one band's factors at a time.
-pub(super) fn eliminate(
+/// Factors and solves band after band, keeping one band's factors at a time, or all where they may be needed again.
+pub(super) fn eliminate<'a>(
     method: &'static str,
-    equation: Equation<'_>,
+    equation: Equation<'a>,
     factor: impl Fn(Equation<'_>, usize) -> Result<Band, FactorError>,
-) -> Result<Solution, SolveError> {
-    let n = equation.n_unknowns();
-    let mut radiance = Block::zeros(n, equation.n_bands());
+) -> Result<Attempt<'a>, SolveError> {
+    let mut radiance = equation.emission.clone();
     let mut work = Work::default();
+    let mut column = Block::zeros(equation.n_unknowns(), 1);
+    let mut kept = Vec::new();
     for band in 0..equation.n_bands() {
         let (factors, n_fill) = factor(equation, band).map_err(|source| SolveError::Factor { method, band, source })?;
         work.n_fill = work.n_fill.max(n_fill);
-        let mut x = Block::from_fn(n, 1, |i, _| equation.emission.get(i, band));
-        factors.solve(&mut x);
-        radiance.column_mut(band).copy_from_slice(x.column(0));
+        substitute(&*factors, &mut column, radiance.column_mut(band));
+        if refine::may_be_needed(equation) {
+            kept.push(factors);
+        }
     }
-    conclude(method, equation, radiance, Stop::Direct, work, Vec::new())
+    let again = (!kept.is_empty()).then(|| {
+        let again = move |r: &Block, correction: &mut Block, _: &mut Work| {
+            correction.copy_from(r);
+            for (band, factors) in kept.iter().enumerate() {
+                substitute(&**factors, &mut column, correction.column_mut(band));
+            }
+        };
+        Box::new(again) as Again<'a>
+    });
+    Ok(Attempt::direct(radiance, work, again))
+}
+
+/// x ← A⁻¹ x, by way of a block of one column.
+pub(super) fn substitute(factors: &dyn Factorization, column: &mut Block, x: &mut [f64]) {
+    column.column_mut(0).copy_from_slice(x);
+    factors.solve(column);
+    x.copy_from_slice(column.column(0));
 }
 
 /// I − K of one band, written out.

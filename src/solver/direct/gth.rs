@@ -11,7 +11,7 @@
 
 use super::factored::{Band, Factored, eliminate};
 use crate::linalg::{Dense, Equation, FactorError, GthFactor};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// Elimination from absorption.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +36,7 @@ impl Solver for Gth {
         true
     }
 
-    fn solve(&self, equation: Equation<'_>, _: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn attempt<'a>(&self, equation: Equation<'a>, _: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         eliminate(self.name(), equation, factor)
     }
 }

@@ -9,7 +9,7 @@
 
 use super::factored::{Band, Factored, eliminate, one_minus_transport};
 use crate::linalg::{Equation, FactorError, LuFactor, NalgebraLu};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// LU by faer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +38,7 @@ impl Solver for Lu {
         true
     }
 
-    fn solve(&self, equation: Equation<'_>, _: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn attempt<'a>(&self, equation: Equation<'a>, _: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         eliminate(self.name(), equation, factor)
     }
 }
@@ -52,7 +52,7 @@ impl Solver for LuNalgebra {
         true
     }
 
-    fn solve(&self, equation: Equation<'_>, _: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn attempt<'a>(&self, equation: Equation<'a>, _: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         eliminate(self.name(), equation, |equation, band| {
             Ok((Box::new(NalgebraLu::new(&one_minus_transport(equation, band))?), None))
         })

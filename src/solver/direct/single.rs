@@ -9,10 +9,10 @@
 //! 2 n² a band for every refinement. Source: Langou et al. (2006); Higham (2002), chapter 12.
 
 use super::factored::one_minus_transport;
-use crate::linalg::{Block, Equation, SingleLuFactor};
+use crate::linalg::{Block, Doubled, Equation, Residual, SingleLuFactor};
 use crate::solver::monitor::Monitor;
-use crate::solver::report::{band_residual, conclude, relative_residual};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::report::{band_residual, relative_residual};
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// LU by faer in f32, refined until the residual is below the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,11 +26,15 @@ impl Solver for SingleLu {
         "lu-f32"
     }
 
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
     fn writes_out(&self) -> bool {
         true
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let method = self.name();
         let mut monitor = Monitor::new(method, equation, self.tolerance, observer);
         let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
@@ -45,22 +49,22 @@ impl Solver for SingleLu {
             .collect::<Result<Vec<_>, _>>()?;
 
         // Refine from L = E.
-        let mut radiance = equation.emission.clone();
+        let mut radiance = Doubled::from(equation.emission.clone());
+        let mut evaluated = Residual::new(equation);
         let mut residual = Block::zeros(n, n_bands);
         let stop = loop {
-            equation.residual(&radiance, &mut residual);
+            evaluated.evaluate(&radiance.high, Some(&radiance.low), &mut residual);
             monitor.count_applies(1);
-            if let Some(stop) = monitor.check(relative_residual(equation.emission, &residual), &radiance)? {
+            if let Some(stop) = monitor.check(relative_residual(equation.emission, &residual), &radiance.high)? {
                 break stop;
             }
             for (band, factors) in factors.iter_mut().enumerate() {
                 if band_residual(equation.emission, &residual, band) > self.tolerance {
                     factors.solve(residual.column_mut(band));
-                    let correction = residual.column(band);
-                    radiance.column_mut(band).iter_mut().zip(correction).for_each(|(l, c)| *l += c);
+                    radiance.add_scaled(band, 1.0, residual.column(band));
                 }
             }
         };
-        conclude(method, equation, radiance, stop, monitor.work, monitor.history)
+        Ok(Attempt::ended(radiance, stop, monitor))
     }
 }

@@ -9,10 +9,10 @@
 //! cost of the dense methods. Cost: that of the fill. LU needs I − K to have an inverse, Cholesky the self-adjoint form, which it checks by
 //! two products, and ρ(K) < 1. Source: Gilbert and Peierls (1988); Davis (2006), chapters 4 and 6; by faer.
 
-use super::cholesky::{solve_symmetrised, symmetrised};
+use super::cholesky::{Symmetrised, solve_symmetrised};
 use super::factored::{Band, Factored, eliminate};
 use crate::linalg::{Equation, FactorError, Factorization, Sparse, SparseCholeskyFactor, SparseLuFactor};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// Sparse LU by faer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +41,7 @@ impl Solver for SparseLu {
         true
     }
 
-    fn solve(&self, equation: Equation<'_>, _: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn attempt<'a>(&self, equation: Equation<'a>, _: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         eliminate(self.name(), equation, factor)
     }
 }
@@ -55,9 +55,13 @@ impl Solver for SparseCholesky {
         true
     }
 
-    fn solve(&self, equation: Equation<'_>, _: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn attempt<'a>(&self, equation: Equation<'a>, _: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         solve_symmetrised(self.name(), equation, |form, band, weight| {
-            let matrix = Sparse::from_operator(&symmetrised(form, band, weight), 0);
+            let (rows, n) = (Symmetrised::new(form, band, weight), weight.len());
+            let matrix = Sparse::from_row_fn(n, n, |i, out| {
+                let (mut row, mut mixed) = (vec![0.0; n], vec![0.0; n]);
+                rows.write_row(i, [&mut row, &mut mixed], out);
+            });
             let factor = SparseCholeskyFactor::new(&matrix)?;
             let n_fill = factor.n_entries();
             Ok((Box::new(factor) as Box<dyn Factorization>, Some(n_fill)))

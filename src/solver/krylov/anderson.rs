@@ -9,10 +9,10 @@
 //! and Ni (2011).
 
 use super::inner::{Inner, add_scaled};
-use crate::linalg::{Block, Equation};
+use crate::linalg::{Block, Doubled, Equation, Residual};
 use crate::solver::monitor::Monitor;
-use crate::solver::report::{conclude, relative_residual};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::report::relative_residual;
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// A difference of residuals that is this much smaller once made orthogonal brings nothing new.
 const NOTHING: f64 = 1e-12;
@@ -31,20 +31,25 @@ impl Solver for Anderson {
         "anderson"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let mut monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
         let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
         let inner = Inner::of(equation);
         let m = self.depth.max(1);
         let zeros = || Block::zeros(n, n_bands);
         let (mut steps, mut falls): (Vec<Block>, Vec<Block>) = (0..m).map(|_| (zeros(), zeros())).unzip();
-        let mut radiance = equation.emission.clone();
+        let mut radiance = Doubled::from(equation.emission.clone());
+        let mut evaluated = Residual::new(equation);
         let (mut residual, mut step, mut before) = (zeros(), zeros(), zeros());
 
         let stop = loop {
-            equation.residual(&radiance, &mut residual);
+            evaluated.evaluate(&radiance.high, Some(&radiance.low), &mut residual);
             monitor.count_applies(1);
-            if let Some(stop) = monitor.check(relative_residual(equation.emission, &residual), &radiance)? {
+            if let Some(stop) = monitor.check(relative_residual(equation.emission, &residual), &radiance.high)? {
                 break stop;
             }
             let k = monitor.work.n_iterations;
@@ -68,9 +73,9 @@ impl Solver for Anderson {
                     add_scaled(step, -weight, fall.column(band));
                 }
             }
-            radiance.add_scaled(1.0, &step);
+            radiance.add(&step);
         };
-        conclude(self.name(), equation, radiance, stop, monitor.work, monitor.history)
+        Ok(Attempt::ended(radiance, stop, monitor))
     }
 }
 

@@ -9,10 +9,10 @@
 //! from its residual; breaking down at once after that is an error. Source: Lanczos (1952); Fletcher (1976); Saad (2003), algorithm 7.3.
 
 use super::inner::{Inner, add_scaled, one_minus_transport};
-use crate::linalg::{Block, Equation};
+use crate::linalg::{Block, Equation, Residual};
 use crate::solver::monitor::Monitor;
-use crate::solver::report::{band_residual, conclude, relative_residual};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::report::{band_residual, relative_residual};
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// Below this share of its factors' sizes an inner product is rounding.
 const NOTHING: f64 = 1e-30;
@@ -29,7 +29,11 @@ impl Solver for BiCg {
         "bicg"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let method = self.name();
         let mut monitor = Monitor::new(method, equation, self.tolerance, observer);
         let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
@@ -37,7 +41,7 @@ impl Solver for BiCg {
         // Start from L = E. The shadow is kept weighted, M r̃, so that K* is the plain transpose.
         let mut radiance = equation.emission.clone();
         let mut r = Block::zeros(n, n_bands);
-        equation.residual(&radiance, &mut r);
+        Residual::new(equation).evaluate(&radiance, None, &mut r);
         monitor.count_applies(1);
         let mut shadow = r.clone();
         (0..n_bands).for_each(|band| inner.weigh(shadow.column_mut(band)));
@@ -97,7 +101,7 @@ impl Solver for BiCg {
                 *product = next;
             }
         };
-        conclude(method, equation, radiance, stop, monitor.work, monitor.history)
+        Ok(Attempt::ended(radiance, stop, monitor))
     }
 }
 

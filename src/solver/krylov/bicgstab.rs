@@ -10,10 +10,10 @@
 
 use super::inner::{Inner, add_scaled, one_minus_transport};
 use super::preconditioner::Preconditioner;
-use crate::linalg::{Block, Equation};
+use crate::linalg::{Block, Equation, Residual};
 use crate::solver::monitor::Monitor;
-use crate::solver::report::{band_residual, conclude, relative_residual};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::report::{band_residual, relative_residual};
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// Below this share of its factors' sizes an inner product is rounding.
 const NOTHING: f64 = 1e-30;
@@ -41,7 +41,11 @@ impl Solver for BiCgStab<'_> {
         if self.preconditioner.is_some() { "preconditioned-bicgstab" } else { "bicgstab" }
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let method = self.name();
         let mut monitor = Monitor::new(method, equation, self.tolerance, observer);
         let prepare = |p: &dyn Preconditioner| p.prepare(method, equation, &mut monitor.work);
@@ -53,7 +57,7 @@ impl Solver for BiCgStab<'_> {
         let mut radiance = equation.emission.clone();
         let zeros = || Block::zeros(n, n_bands);
         let (mut r, mut v, mut t, mut step) = (zeros(), zeros(), zeros(), zeros());
-        equation.residual(&radiance, &mut r);
+        Residual::new(equation).evaluate(&radiance, None, &mut r);
         monitor.count_applies(1);
         let (mut shadow, mut p) = (r.clone(), r.clone());
         let begin =
@@ -124,6 +128,6 @@ impl Solver for BiCgStab<'_> {
                 (state.rho, state.is_fresh) = (rho, false);
             }
         };
-        conclude(method, equation, radiance, stop, monitor.work, monitor.history)
+        Ok(Attempt::ended(radiance, stop, monitor))
     }
 }

@@ -11,9 +11,9 @@
 use super::inner::add_scaled;
 use crate::linalg::{Block, Equation};
 use crate::solver::monitor::Monitor;
-use crate::solver::report::{band_residual, conclude, relative_residual};
+use crate::solver::report::{band_residual, relative_residual};
 use crate::solver::self_adjoint::{CHECK, checked_form};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// Iterates until the residual is below the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,11 @@ impl Solver for Cg {
         "cg"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let method = self.name();
         let mut monitor = Monitor::new(method, equation, self.tolerance, observer);
         let form = checked_form(method, equation)?;
@@ -78,6 +82,6 @@ impl Solver for Cg {
                 *norm = next;
             }
         };
-        conclude(method, equation, radiance, stop, monitor.work, monitor.history)
+        Ok(Attempt::ended(radiance, stop, monitor))
     }
 }

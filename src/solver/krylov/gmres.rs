@@ -12,10 +12,10 @@
 
 use super::inner::{Inner, add_scaled, one_minus_transport, set_scaled};
 use super::preconditioner::Preconditioner;
-use crate::linalg::{Block, Equation};
+use crate::linalg::{Block, Equation, Residual};
 use crate::solver::monitor::Monitor;
-use crate::solver::report::{band_residual, conclude, relative_residual};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::report::{band_residual, relative_residual};
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// GMRES(m), preconditioned from the right.
 #[derive(Clone, Copy)]
@@ -42,7 +42,11 @@ impl Solver for Gmres<'_> {
         if self.preconditioner.is_some() { "preconditioned-gmres" } else { "gmres" }
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
         minimise(self.name(), equation, self.tolerance, self.restart, self.preconditioner, monitor)
     }
@@ -53,21 +57,25 @@ impl Solver for FlexibleGmres<'_> {
         "fgmres"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
         minimise(self.name(), equation, self.tolerance, self.restart, Some(self.preconditioner), monitor)
     }
 }
 
 /// The loop behind every method of this family, in the name of one of them.
-pub(in crate::solver) fn minimise(
+pub(in crate::solver) fn minimise<'a>(
     method: &'static str,
-    equation: Equation<'_>,
+    equation: Equation<'a>,
     tolerance: f64,
     restart: usize,
     preconditioner: Option<&dyn Preconditioner>,
     mut monitor: Monitor<'_>,
-) -> Result<Solution, SolveError> {
+) -> Result<Attempt<'a>, SolveError> {
     let prepare = |p: &dyn Preconditioner| p.prepare(method, equation, &mut monitor.work);
     let mut prepared = preconditioner.map(prepare).transpose()?;
     let (n, n_bands) = (equation.n_unknowns(), equation.n_bands());
@@ -78,12 +86,13 @@ pub(in crate::solver) fn minimise(
     let mut steps: Vec<Block> = if prepared.is_some() { (0..m).map(|_| zeros()).collect() } else { Vec::new() };
     let mut squares: Vec<LeastSquares> = (0..n_bands).map(|_| LeastSquares::new(m)).collect();
     let (mut start, mut radiance, mut r) = (equation.emission.clone(), equation.emission.clone(), zeros());
+    let mut residual = Residual::new(equation);
     let mut is_done = vec![false; n_bands];
 
     let stop = 'restarts: loop {
         // Begin a cycle with the residual of what there is.
         start.copy_from(&radiance);
-        equation.residual(&start, &mut r);
+        residual.evaluate(&start, None, &mut r);
         monitor.count_applies(1);
         for (band, squares) in squares.iter_mut().enumerate() {
             let norm = inner.norm(r.column(band));
@@ -149,7 +158,7 @@ pub(in crate::solver) fn minimise(
             break stop;
         }
     };
-    conclude(method, equation, radiance, stop, monitor.work, monitor.history)
+    Ok(Attempt::ended(radiance, stop, monitor))
 }
 
 /// argmin ‖norm e₁ − H y‖ of one band, H turned triangular column by column.

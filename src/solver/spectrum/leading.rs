@@ -67,19 +67,25 @@ pub fn leading_singular_values(equation: Equation<'_>, settings: Eigen) -> Resul
 /// # Errors
 /// Entries that are not finite.
 pub fn all_singular_values(equation: Equation<'_>, band: usize) -> Result<[Vec<f64>; 2], SolveError> {
+    let mut weighed = weighed(equation, band);
+    let failed = |source| SolveError::Factor { method: "singular values", band, source };
+    let of_transport = dense_singular_values(&weighed).map_err(failed)?;
+    for r in 0..equation.n_unknowns() {
+        weighed.row_mut(r).iter_mut().for_each(|v| *v = -*v);
+        weighed.row_mut(r)[r] += 1.0;
+    }
+    Ok([of_transport, dense_singular_values(&weighed).map_err(failed)?])
+}
+
+/// M^½ K M^−½ of one band, written out: its singular values are those of K in the norm of étendue.
+pub(super) fn weighed(equation: Equation<'_>, band: usize) -> Dense {
     let etendue = etendue(equation.self_adjoint, equation.n_unknowns());
     let root: Vec<f64> = etendue.iter().map(|mu| mu.sqrt()).collect();
     let mut weighed = Dense::from_operator(equation.transport, band);
     for (r, left) in root.iter().enumerate() {
         weighed.row_mut(r).iter_mut().zip(&root).for_each(|(v, right)| *v *= left / right);
     }
-    let failed = |source| SolveError::Factor { method: "singular values", band, source };
-    let of_transport = dense_singular_values(&weighed).map_err(failed)?;
-    for r in 0..root.len() {
-        weighed.row_mut(r).iter_mut().for_each(|v| *v = -*v);
-        weighed.row_mut(r)[r] += 1.0;
-    }
-    Ok([of_transport, dense_singular_values(&weighed).map_err(failed)?])
+    weighed
 }
 
 /// How many of these, largest first, exceed `tolerance` times the first: the rank that K has for whoever asks for no more.

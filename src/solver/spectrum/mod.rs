@@ -4,6 +4,7 @@ mod krylov_schur;
 mod leading;
 pub mod prediction;
 mod radius;
+mod rank;
 mod truncation;
 
 pub use krylov_schur::{Eigen, Eigenpair};
@@ -12,4 +13,5 @@ pub use leading::{
     leading_singular_values,
 };
 pub use radius::{RadiusBounds, SpectralRadius, largest_gain, spectral_radius};
+pub use rank::{RankBounds, rank_bounds};
 pub use truncation::TruncationBound;

@@ -11,8 +11,8 @@
 use super::interval;
 use crate::linalg::{Block, Equation};
 use crate::solver::monitor::Monitor;
-use crate::solver::report::{conclude, relative_residual};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::report::relative_residual;
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// Least half-width of the interval relative to its centre.
 const NARROWEST: f64 = 1e-6;
@@ -36,7 +36,11 @@ impl Solver for Chebyshev {
         "chebyshev"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let method = self.name();
         let mut monitor = Monitor::new(method, equation, self.tolerance, observer);
         let form = equation.self_adjoint.ok_or(SolveError::NoSelfAdjointForm { method })?;
@@ -80,6 +84,6 @@ impl Solver for Chebyshev {
                 state.ratio = next;
             }
         };
-        conclude(method, equation, radiance, stop, monitor.work, monitor.history)
+        Ok(Attempt::ended(radiance, stop, monitor))
     }
 }

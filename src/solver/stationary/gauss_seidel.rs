@@ -12,8 +12,7 @@ use super::jacobi::one_minus_diagonal;
 use super::sweep::{Order, Sweep};
 use crate::linalg::{Equation, worst};
 use crate::solver::monitor::Monitor;
-use crate::solver::report::conclude;
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// Sweeps forward until the residual is below the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +33,11 @@ impl Solver for GaussSeidel {
         "gauss-seidel"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         repeat(self.name(), equation, self.tolerance, &[Order::Forward], observer)
     }
 }
@@ -44,18 +47,22 @@ impl Solver for SymmetricGaussSeidel {
         "symmetric-gauss-seidel"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         repeat(self.name(), equation, self.tolerance, &[Order::Forward, Order::Backward], observer)
     }
 }
 
-fn repeat(
+fn repeat<'a>(
     method: &'static str,
-    equation: Equation<'_>,
+    equation: Equation<'a>,
     tolerance: f64,
     passes: &[Order],
     observer: &mut dyn Observer,
-) -> Result<Solution, SolveError> {
+) -> Result<Attempt<'a>, SolveError> {
     let mut monitor = Monitor::new(method, equation, tolerance, observer);
     let mut sweep = Sweep::new(equation, one_minus_diagonal(method, equation)?);
     let plain = vec![1.0; equation.n_bands()];
@@ -69,5 +76,5 @@ fn repeat(
             break stop;
         }
     };
-    conclude(method, equation, radiance, stop, monitor.work, monitor.history)
+    Ok(Attempt::ended(radiance, stop, monitor))
 }

@@ -7,10 +7,10 @@
 //! Needs ρ(K) < 1 and Kᵢᵢ < 1. One product a sweep. Flat patches do not see themselves, so there it is the Neumann series; cells of
 //! a medium and glossy bins do. Source: Jacobi (1845); Saad (2003), §4.1.
 
-use crate::linalg::{Block, Equation};
+use crate::linalg::{Block, Doubled, Equation, Residual};
 use crate::solver::monitor::Monitor;
-use crate::solver::report::{conclude, relative_residual};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::report::relative_residual;
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// Sweeps until the residual is below the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,23 +24,37 @@ impl Solver for Jacobi {
         "jacobi"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
-        let mut monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
-        let own = one_minus_diagonal(self.name(), equation)?;
-        let mut radiance = equation.emission.clone();
-        let mut residual = Block::zeros(radiance.n_rows(), radiance.n_columns());
-        let stop = loop {
-            equation.residual(&radiance, &mut residual);
-            monitor.count_applies(1);
-            if let Some(stop) = monitor.check(relative_residual(equation.emission, &residual), &radiance)? {
-                break stop;
-            }
-            for ((l, r), own) in radiance.values_mut().iter_mut().zip(residual.values()).zip(own.values()) {
-                *l += r / own;
-            }
-        };
-        conclude(self.name(), equation, radiance, stop, monitor.work, monitor.history)
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
     }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
+        let monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
+        let mut steps = one_minus_diagonal(self.name(), equation)?;
+        steps.values_mut().iter_mut().for_each(|own| *own = 1.0 / *own);
+        step_along_residuals(equation, monitor, &steps)
+    }
+}
+
+/// Lᵢ ← Lᵢ + sᵢ (E + K L − L)ᵢ until the residual is below the tolerance, with steps s, n × bands. One product a step.
+pub(super) fn step_along_residuals<'a>(
+    equation: Equation<'a>,
+    mut monitor: Monitor<'_>,
+    steps: &Block,
+) -> Result<Attempt<'a>, SolveError> {
+    let mut radiance = Doubled::from(equation.emission.clone());
+    let mut evaluated = Residual::new(equation);
+    let mut residual = Block::zeros(equation.n_unknowns(), equation.n_bands());
+    let stop = loop {
+        evaluated.evaluate(&radiance.high, Some(&radiance.low), &mut residual);
+        monitor.count_applies(1);
+        if let Some(stop) = monitor.check(relative_residual(equation.emission, &residual), &radiance.high)? {
+            break stop;
+        }
+        residual.values_mut().iter_mut().zip(steps.values()).for_each(|(r, step)| *r *= step);
+        radiance.add(&residual);
+    };
+    Ok(Attempt::ended(radiance, stop, monitor))
 }
 
 /// 1 − Kᵢᵢ, n × bands.

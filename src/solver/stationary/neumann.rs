@@ -9,8 +9,8 @@
 
 use crate::linalg::{Block, Equation};
 use crate::solver::monitor::Monitor;
-use crate::solver::report::{conclude, relative_residual};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::report::relative_residual;
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// Sums bounces until the next one is below the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +24,11 @@ impl Solver for Neumann {
         "neumann"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let mut monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
         let mut radiance = equation.emission.clone();
         let mut term = equation.emission.clone();
@@ -39,6 +43,6 @@ impl Solver for Neumann {
             }
             radiance.add_scaled(1.0, &term);
         };
-        conclude(self.name(), equation, radiance, stop, monitor.work, monitor.history)
+        Ok(Attempt::ended(radiance, stop, monitor))
     }
 }

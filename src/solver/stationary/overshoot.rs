@@ -13,8 +13,8 @@ use super::jacobi::one_minus_diagonal;
 use super::shooting::{Shooting, Shot};
 use crate::linalg::Equation;
 use crate::solver::monitor::Monitor;
-use crate::solver::report::{conclude, relative_residual};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::report::relative_residual;
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// Largest ω.
 const LIMIT: f64 = 1.8;
@@ -31,7 +31,11 @@ impl Solver for Overshooting {
         "overshooting"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let mut monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
         let mut shooting = Shooting::new(equation, one_minus_diagonal(self.name(), equation)?);
         let ambient = Ambient::new(equation, &shooting.weights, &mut monitor.work);
@@ -47,6 +51,6 @@ impl Solver for Overshooting {
             shooting.shoot(&relaxation);
             monitor.work.products += 1.0;
         };
-        conclude(self.name(), equation, shooting.radiance, stop, monitor.work, monitor.history)
+        Ok(Attempt::ended(shooting.radiance, stop, monitor))
     }
 }

@@ -11,10 +11,10 @@
 use super::ambient::Ambient;
 use super::jacobi::one_minus_diagonal;
 use super::shooting::Shooting;
-use crate::linalg::{Block, Equation};
+use crate::linalg::{Block, Equation, Residual};
 use crate::solver::monitor::Monitor;
-use crate::solver::report::{conclude, relative_residual};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::report::relative_residual;
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// Shoots until the residual of what is shown is below the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,11 +28,16 @@ impl Solver for Progressive {
         "progressive"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let mut monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
         let mut shooting = Shooting::new(equation, one_minus_diagonal(self.name(), equation)?);
         let ambient = Ambient::new(equation, &shooting.weights, &mut monitor.work);
         let mut shown = equation.emission.clone();
+        let mut evaluated = Residual::new(equation);
         let mut residual = Block::zeros(equation.n_unknowns(), equation.n_bands());
         let stop = loop {
             // Show what is shot with what is not.
@@ -44,7 +49,7 @@ impl Solver for Progressive {
                 let shown = shown.column_mut(band).iter_mut();
                 shown.zip(parts).for_each(|(shown, ((l, r), gain))| *shown = l + r + gain * even);
             }
-            equation.residual(&shown, &mut residual);
+            evaluated.evaluate(&shown, None, &mut residual);
             monitor.count_applies(1);
             if let Some(stop) = monitor.check(relative_residual(equation.emission, &residual), &shown)? {
                 break stop;
@@ -52,6 +57,6 @@ impl Solver for Progressive {
             shooting.shoot(&|_| 1.0);
             monitor.work.products += 1.0;
         };
-        conclude(self.name(), equation, shown, stop, monitor.work, monitor.history)
+        Ok(Attempt::ended(shown, stop, monitor))
     }
 }

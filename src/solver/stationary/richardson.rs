@@ -9,10 +9,10 @@
 //! Source: Richardson (1911); Saad (2003), §4.2.1.
 
 use super::interval;
+use super::jacobi::step_along_residuals;
 use crate::linalg::{Block, Equation};
 use crate::solver::monitor::Monitor;
-use crate::solver::report::{conclude, relative_residual};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// Iterates until the residual is below the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,11 @@ impl Solver for Richardson {
         "richardson"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let mut monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
         let damping = match self.damping {
             Some(omega) => vec![omega; equation.n_bands()],
@@ -37,19 +41,7 @@ impl Solver for Richardson {
                 intervals.iter().map(|band| 2.0 / (band.low + band.high)).collect()
             }
         };
-        let mut radiance = equation.emission.clone();
-        let mut residual = Block::zeros(radiance.n_rows(), radiance.n_columns());
-        let stop = loop {
-            equation.residual(&radiance, &mut residual);
-            monitor.count_applies(1);
-            if let Some(stop) = monitor.check(relative_residual(equation.emission, &residual), &radiance)? {
-                break stop;
-            }
-            for (band, omega) in damping.iter().enumerate() {
-                let pairs = radiance.column_mut(band).iter_mut().zip(residual.column(band));
-                pairs.for_each(|(l, r)| *l += omega * r);
-            }
-        };
-        conclude(self.name(), equation, radiance, stop, monitor.work, monitor.history)
+        let steps = Block::from_fn(equation.n_unknowns(), equation.n_bands(), |_, band| damping[band]);
+        step_along_residuals(equation, monitor, &steps)
     }
 }

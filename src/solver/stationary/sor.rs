@@ -15,8 +15,7 @@ use super::jacobi::one_minus_diagonal;
 use super::sweep::{Order, Sweep};
 use crate::linalg::{Equation, worst};
 use crate::solver::monitor::Monitor;
-use crate::solver::report::conclude;
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// Plain sweeps that measure λ.
 const MEASURED: usize = 6;
@@ -35,7 +34,11 @@ impl Solver for Sor {
         "sor"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let mut monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
         let mut sweep = Sweep::new(equation, one_minus_diagonal(self.name(), equation)?);
         let mut relaxation = vec![self.relaxation.unwrap_or(1.0); equation.n_bands()];
@@ -55,7 +58,7 @@ impl Solver for Sor {
                 }
             }
         };
-        conclude(self.name(), equation, radiance, stop, monitor.work, monitor.history)
+        Ok(Attempt::ended(radiance, stop, monitor))
     }
 }
 

@@ -11,8 +11,8 @@ use super::jacobi::one_minus_diagonal;
 use super::shooting::Shooting;
 use crate::linalg::Equation;
 use crate::solver::monitor::Monitor;
-use crate::solver::report::{conclude, relative_residual};
-use crate::solver::{Observer, Solution, SolveError, Solver};
+use crate::solver::report::relative_residual;
+use crate::solver::{Attempt, Observer, SolveError, Solver};
 
 /// Shoots until the residual is below the tolerance. An iteration is n shots in every band.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,11 @@ impl Solver for Southwell {
         "southwell"
     }
 
-    fn solve(&self, equation: Equation<'_>, observer: &mut dyn Observer) -> Result<Solution, SolveError> {
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+
+    fn attempt<'a>(&self, equation: Equation<'a>, observer: &mut dyn Observer) -> Result<Attempt<'a>, SolveError> {
         let mut monitor = Monitor::new(self.name(), equation, self.tolerance, observer);
         let mut shooting = Shooting::new(equation, one_minus_diagonal(self.name(), equation)?);
         let stop = loop {
@@ -37,6 +41,6 @@ impl Solver for Southwell {
             shooting.shoot(&|_| 1.0);
             monitor.work.products += 1.0;
         };
-        conclude(self.name(), equation, shooting.radiance, stop, monitor.work, monitor.history)
+        Ok(Attempt::ended(shooting.radiance, stop, monitor))
     }
 }

@@ -1,6 +1,6 @@
 //! `etendue export`, `solve --matrix`, `sensitivity`, `spectrum`: matrices out and in, and what is read off them.
 
-use super::{Desk, number, numbers};
+use super::{Desk, etendue, number, numbers};
 use serde_json::Value;
 use std::fs;
 
@@ -118,4 +118,51 @@ fn the_spectrum_of_a_furnace_is_led_by_its_albedo() {
         assert!(number(&band["condition"]) >= 1.0);
     }
     assert_eq!(desk.names("s"), ["report.json", "spectrum.csv", "spectrum.png", "spectrum.svg"]);
+}
+
+#[test]
+fn what_if_answers_are_exact_and_told_beside_what_the_derivatives_foretold() {
+    let desk = Desk::new(&[]);
+    let scene = ["sensitivity", "cornell-box", "--patch-size", "1", "--sensor", "irradiance:floor", "--quiet"];
+    let changes = ["--what-if", "light.emission=9", "--what-if", "back.albedo=0.3,0.2,0.1"];
+    let object = desk.json(&[&scene[..], &changes, &["--json"]].concat());
+    let found = object["what_ifs"].as_array().unwrap();
+    assert_eq!(found.len(), 2);
+    for what in found {
+        let [exact, first_order, fresh] = ["reading", "first_order", "fresh"].map(|name| numbers(&what[name]));
+        for band in 0..3 {
+            // A fresh solution by conjugate gradients to 1e-12 of the emission.
+            assert!((exact[band] / fresh[band] - 1.0).abs() < 1e-10, "{what}");
+            // Light is linear in emission, and only nearly so in albedo.
+            let gap = (first_order[band] / exact[band] - 1.0).abs();
+            let is_linear = what["change"] == "light.emission=9";
+            assert!(if is_linear { gap < 1e-10 } else { gap > 1e-3 && gap < 0.2 }, "{gap} {what}");
+        }
+    }
+    // An emission changes no row of K; the back wall of 5 patches or so its own.
+    assert!(found[0]["n_rows"] == 0 && found[1]["n_rows"].as_u64().is_some_and(|n| n > 0 && n < 20), "{object}");
+    let table = desk.run(&[&scene[..], &changes].concat()).stdout;
+    for words in ["light.emission=9         exactly", "first order", "solved afresh", "back.albedo=0.3,0.2,0.1"] {
+        assert!(table.contains(words), "'{words}' is not in: {table}");
+    }
+}
+
+#[test]
+fn what_is_no_change_of_a_surface_is_refused() {
+    let cases: [(&str, &[&str]); 9] = [
+        ("floor", &["no change of a surface", "SURFACE.albedo=VALUE"]),
+        ("floor=0.3", &["no change of a surface"]),
+        ("flor.albedo=0.3", &["there is no surface 'flor'", "'floor'"]),
+        ("floor.colour=0.3", &["'colour' is no property", "SURFACE.emission=VALUE"]),
+        ("floor.albedo=1.5", &["'1.5' is out of range", "from 0 to 1"]),
+        ("floor.albedo=nan", &["'nan' is out of range"]),
+        ("light.emission=-1", &["'-1' is out of range", "0 or more"]),
+        ("light.emission=inf", &["'inf' is out of range"]),
+        ("floor.albedo=0.1,0.2", &["there are 2 values", "red, green, blue"]),
+    ];
+    for (change, words) in cases {
+        let run = etendue(&["sensitivity", "cornell-box", "--sensor", "radiance:floor", "--what-if", change]);
+        run.assert_refused(4, &[&["--what-if", change][..], words].concat());
+        assert!(run.took < super::AT_ONCE, "{change}");
+    }
 }

@@ -41,6 +41,7 @@ fn the_object_has_every_field_in_its_shape() {
             "laws",
             "exchange",
             "report",
+            "duality",
             "notes",
             "provenance",
         ],
@@ -73,6 +74,8 @@ fn the_object_has_every_field_in_its_shape() {
     assert_fields(&object["report"], &[&counts[..], &rest].concat());
     assert!(counts.iter().all(|count| object["report"][count].is_u64()));
     assert_eq!((&object["report"]["solver"], &object["report"]["stop"]), (&json!("cg"), &json!("converged")));
+    let dual = ["sensor", "unit", "solver", "reading", "dual_reading", "difference", "stop", "products", "seconds"];
+    assert_fields(&object["duality"], &dual);
     assert_fields(
         &object["provenance"],
         &["version", "command", "scene", "scene_hash", "patch_size", "n_directions", "seed", "settings"],
@@ -128,7 +131,7 @@ fn the_numbers_are_those_of_the_equation() {
 #[test]
 fn every_solver_answers_the_furnace() {
     let exact = [2.0, 2.0, 2.5];
-    for method in etendue::solver::everyone(1e-12) {
+    for method in etendue::solver::all(1e-12) {
         let object = solve(&["furnace-cube", "--patch-size", "0.5", "--solver", method.name()]);
         let report = &object["report"];
         assert_eq!(report["solver"], method.name());

@@ -54,7 +54,7 @@ fn a_study_writes_its_folder_whole_and_replaces_its_own() {
         assert!(names.iter().any(|found| found == name), "{name} is not in {names:?}");
     }
     assert_eq!(desk.names("out"), ["cornell"]);
-    for method in etendue::solver::everyone(1.0) {
+    for method in etendue::solver::all(1.0) {
         assert!(first.stdout.lines().any(|line| line.starts_with(method.name())), "{}", first.stdout);
     }
     assert!(first.stdout.trim_end().ends_with("report.html"), "{}", first.stdout);
@@ -85,4 +85,59 @@ fn a_scene_without_a_camera_has_a_report_without_pictures() {
     for run in object["solvers"].as_array().unwrap() {
         assert!(super::number(&run["true_residual"]) <= 1e-12, "{run}");
     }
+}
+
+#[test]
+fn albedos_are_looked_at_in_order_and_within_their_budget() {
+    let desk = Desk::new(&[("room.xml", FURNACE.as_bytes())]);
+    let arguments = [
+        &["study", "room.xml", "--patch-size", "1", "--solvers", "gth,neumann,cg", "-o", "report"][..],
+        &["--albedo", "0.99,0.5", "--max-products", "50"],
+        &FEW,
+    ]
+    .concat();
+    let run = desk.run(&arguments);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    // 0.5⁴⁰ is the first power of ½ below 10⁻¹²; at 0.99 it takes 2750.
+    let table = run.stdout.split("products and error against gth at albedo").nth(1).expect("a table of albedos");
+    let neumann = table.lines().find(|line| line.starts_with("neumann")).expect("a line of the Neumann series");
+    let words: Vec<&str> = neumann.split_whitespace().collect();
+    assert!(words[1] == "40.0" && words[3] == ">50", "{neumann}");
+    assert!(run.stdout.contains("duality by gth: reflected flux of all surfaces"), "{}", run.stdout);
+    let names = assert_folder(&desk, "report");
+    for name in ["albedos.svg", "albedos.png", "albedos.csv"] {
+        assert!(names.iter().any(|found| found == name), "{name} is not in {names:?}");
+    }
+
+    let albedos = &read_json(&desk.path("report/report.json"))["albedos"];
+    assert_eq!((super::number(&albedos["budget"]), albedos["reference_solver"].as_str()), (50.0, Some("gth")));
+    let levels = albedos["levels"].as_array().unwrap();
+    assert_eq!(levels.iter().map(|level| super::number(&level["albedo"])).collect::<Vec<_>>(), [0.5, 0.99]);
+    for level in levels {
+        let runs = level["runs"].as_array().unwrap();
+        let names: Vec<&str> = runs.iter().map(|run| run["solver"].as_str().unwrap()).collect();
+        assert_eq!(names, ["gth", "neumann", "cg"]);
+        assert_eq!(super::number(&runs[0]["error"]), 0.0);
+        assert!(super::number(&runs[2]["error"]) < 1e-11, "{}", runs[2]);
+    }
+    let neumann = |level: usize| &levels[level]["runs"][1];
+    assert_eq!((neumann(0)["stop"].as_str(), neumann(1)["stop"].as_str()), (Some("converged"), Some("budget")));
+    // After 50 bounces 0.99⁵⁰ of the light is still to come.
+    assert!((super::number(&neumann(1)["error"]) - 0.99_f64.powi(50)).abs() < 1e-9, "{}", neumann(1));
+}
+
+#[test]
+fn albedos_out_of_range_are_refused_before_the_work() {
+    for (albedos, words) in [
+        ("1", ["1 is out of range", "0 ≤ albedo < 1"]),
+        ("0.5,1.5", ["1.5 is out of range", "nothing is absorbed"]),
+        ("-0.1", ["-0.1 is out of range", "albedo"]),
+        ("nan", ["NaN is out of range", "albedo"]),
+    ] {
+        let run = super::etendue(&["study", "maze", "--albedo", albedos]);
+        run.assert_refused(4, &words);
+        assert!(run.took < super::AT_ONCE, "{albedos}");
+    }
+    super::etendue(&["study", "maze", "--albedo", "white"]).assert_refused(64, &["white", "--albedo"]);
+    super::etendue(&["study", "maze", "--max-products", "9"]).assert_refused(64, &["--albedo"]);
 }

@@ -2,8 +2,9 @@
 
 use etendue::image::Image;
 use etendue::study::{
-    EstimatorRun, ExchangeSummary, HistoryPoint, LawsMeasured, Pictures, Provenance, Refinement, RefinementLevel,
-    RepairRun, SamplePoint, SolverRun, StudyOutcome, SurfaceMean, Truncation,
+    AdjointRun, AlbedoLevel, AlbedoStudy, Duality, EstimatorRun, ExchangeSummary, Family, HistoryPoint, LawsMeasured,
+    Pictures, Provenance, Refinement, RefinementLevel, RepairRun, SamplePoint, SolverRun, StudyOutcome, SurfaceMean,
+    Truncation,
 };
 use std::collections::BTreeMap;
 
@@ -17,7 +18,9 @@ fn iterative(solver: &str, factor: f64, step: f64, seed: usize) -> SolverRun {
     let mut history = Vec::new();
     for i in 0..400 {
         let error = (0.8 * factor.powi(i) * (1.0 + 0.15 * wobble(seed + i as usize))).max(2e-16);
-        history.push(HistoryPoint { products: step * f64::from(i), residual: (0.6 * error).max(1e-16), error });
+        let predicted = (seed < 200).then(|| 0.9 * factor.powi(i));
+        let (products, residual) = (step * f64::from(i), (0.6 * error).max(1e-16));
+        history.push(HistoryPoint { products, seconds: 0.004 * products, residual, error, predicted });
         if 0.6 * error < 1e-13 {
             break;
         }
@@ -26,6 +29,7 @@ fn iterative(solver: &str, factor: f64, step: f64, seed: usize) -> SolverRun {
     SolverRun {
         solver: solver.into(),
         kind: "iterative".into(),
+        family: if factor < 0.2 { Family::Krylov } else { Family::Stationary },
         stop: "converged".into(),
         refusal: None,
         n_applies: last.products as usize,
@@ -35,14 +39,46 @@ fn iterative(solver: &str, factor: f64, step: f64, seed: usize) -> SolverRun {
         true_residual: last.residual,
         error: last.error,
         error_bound: Some(6.0 * last.error),
+        adjoint: Some(adjoint("converged", last.products, last.error)),
         history,
     }
+}
+
+fn adjoint(stop: &str, products: f64, difference: f64) -> AdjointRun {
+    AdjointRun { stop: stop.into(), products, seconds: 0.004 * products, difference }
+}
+
+/// Products that grow as 1/(1 − albedo), or as its root, and one method that refuses the last.
+fn albedos(solvers: &[SolverRun]) -> AlbedoStudy {
+    const BUDGET: f64 = 1000.0;
+    let level = |albedo: f64| {
+        let runs = solvers.iter().enumerate().map(|(k, run)| {
+            let growth = if run.family == Family::Krylov { (1.0 - albedo).powf(-0.5) } else { 1.0 / (1.0 - albedo) };
+            let products = ((20 + k) as f64 * growth).min(BUDGET);
+            let stop = match (run.kind.as_str(), products < BUDGET) {
+                ("direct", _) => "direct",
+                (_, true) => "converged",
+                (_, false) => "budget",
+            };
+            SolverRun { stop: stop.into(), products, history: Vec::new(), adjoint: None, ..run.clone() }
+        });
+        let mut runs: Vec<SolverRun> = runs.collect();
+        if albedo > 0.99 {
+            runs[1].stop = "refused".into();
+            runs[1].refusal = Some("Cholesky needs I − K to be positive definite".into());
+            runs[1].products = f64::NAN;
+        }
+        AlbedoLevel { albedo, runs }
+    };
+    let levels = [0.5, 0.9, 0.99, 0.999].map(level).to_vec();
+    AlbedoStudy { tolerance: 1e-12, budget: BUDGET, reference_solver: "gth".into(), levels }
 }
 
 fn direct(solver: &str, seconds: f64, error: f64) -> SolverRun {
     SolverRun {
         solver: solver.into(),
         kind: "direct".into(),
+        family: Family::Direct,
         stop: "direct".into(),
         refusal: None,
         n_applies: 0,
@@ -52,6 +88,7 @@ fn direct(solver: &str, seconds: f64, error: f64) -> SolverRun {
         true_residual: 3.1e-16,
         error,
         error_bound: None,
+        adjoint: Some(adjoint("direct", 812.5, 2.2e-16)),
         history: Vec::new(),
     }
 }
@@ -112,9 +149,20 @@ pub fn cornell() -> StudyOutcome {
                 path_tracer,
                 standard_error: 0.0004 * matrix,
                 discretisation_error: 0.0021 * matrix,
+                is_comparable: s > 0,
             }
         })
     });
+    let solvers = vec![
+        direct("LU (faer)", 0.61, 0.0),
+        direct("Cholesky (faer)", 0.34, 8.9e-16),
+        direct("LU (nalgebra)", 3.9, 1.1e-15),
+        iterative("Neumann series", 0.52, 1.0, 1),
+        iterative("Jacobi", 0.52, 1.0, 100),
+        iterative("Gauss–Seidel", 0.31, 1.0, 200),
+        iterative("Southwell", 0.45, 0.62, 300),
+        iterative("Conjugate gradients", 0.11, 1.0, 400),
+    ];
     StudyOutcome {
         scene: "cornell-box".into(),
         provenance: Provenance {
@@ -163,16 +211,19 @@ pub fn cornell() -> StudyOutcome {
         })
         .to_vec(),
         reference_solver: "LU (faer)".into(),
-        solvers: vec![
-            direct("LU (faer)", 0.61, 0.0),
-            direct("Cholesky (faer)", 0.34, 8.9e-16),
-            direct("LU (nalgebra)", 3.9, 1.1e-15),
-            iterative("Neumann series", 0.52, 1.0, 1),
-            iterative("Jacobi", 0.52, 1.0, 100),
-            iterative("Gauss–Seidel", 0.31, 1.0, 200),
-            iterative("Southwell", 0.45, 0.62, 300),
-            iterative("Conjugate gradients", 0.11, 1.0, 400),
-        ],
+        albedos: Some(albedos(&solvers)),
+        solvers,
+        duality: Duality {
+            sensor: "mean irradiance of 'floor'".into(),
+            unit: "W m⁻²",
+            solver: "LU (faer)".into(),
+            reading: vec![1.25, 1.5, 0.75],
+            dual_reading: vec![1.25, 1.5, 0.75],
+            difference: 2.2e-16,
+            stop: "direct".into(),
+            products: 812.5,
+            seconds: 0.4,
+        },
         truncation: (0..44)
             .map(|k| {
                 let error = (0.71 * 0.52_f64.powi(k)).max(2e-16);

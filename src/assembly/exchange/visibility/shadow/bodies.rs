@@ -7,13 +7,12 @@ use std::collections::HashMap;
 /// Solids of more facets are left in pieces: proving one convex costs facets times corners.
 const LARGEST: usize = 16_384;
 
-/// All obstacles of a scene: every facet belongs to one body, and is one by itself.
+/// All obstacles of a scene: every polygon of the tracer belongs to one body, and is one by itself.
 pub struct Bodies {
+    /// Flat ones, by the handles of their polygons; then those of several.
     bodies: Vec<Body>,
     /// Body of every handle of the tracer.
     body_of: Vec<u32>,
-    /// The flat body of every handle alone; the same where it is no part of a larger one.
-    facet_of: Vec<u32>,
     /// The face of its body that every handle is part of.
     face_of: Vec<u32>,
 }
@@ -22,26 +21,25 @@ impl Bodies {
     /// Joins facets that share an edge, corner for corner, and bend away from their fronts there, as far as what results is convex
     /// and at most open on one side. Cost O(n log n) for scenes of bodies of bounded size.
     pub fn new(tracer: &Tracer, polygons: &[&Polygon]) -> Self {
-        let mut bodies: Vec<Body> = polygons
-            .iter()
-            .map(|p| {
-                let whole = || Body::new(Vec::new(), Vec::new(), p.vertices().to_vec(), None);
-                Body::flat(p.vertices().to_vec(), p.normal()).unwrap_or_else(whole)
+        let handles = 0..tracer.n_polygons() as u32;
+        let mut bodies: Vec<Body> = handles
+            .clone()
+            .map(|handle| {
+                let corners = || tracer.corners_of(handle).to_vec();
+                let whole = || Body::new(Vec::new(), Vec::new(), corners(), None);
+                Body::flat(corners(), tracer.normal_of(handle)).unwrap_or_else(whole)
             })
             .collect();
-        let mut owner: Vec<u32> = (0..polygons.len() as u32).collect();
-        let mut face: Vec<u32> = vec![0; polygons.len()];
+        let mut part_of: Vec<Option<(u32, u32)>> = vec![None; polygons.len()];
         for Joined { members, body } in Joints::of(polygons).bodies() {
-            for (facet, number) in members {
-                (owner[facet], face[facet]) = (bodies.len() as u32, number);
+            for (facet, face) in members {
+                part_of[facet] = Some((bodies.len() as u32, face));
             }
             bodies.push(body);
         }
-        let ids: Vec<usize> = (0..tracer.n_polygons() as u32).map(|handle| tracer.polygon_of(handle)).collect();
-        let body_of = ids.iter().map(|&id| owner[id]).collect();
-        let facet_of = ids.iter().map(|&id| id as u32).collect();
-        let face_of = ids.iter().map(|&id| face[id]).collect();
-        Self { bodies, body_of, facet_of, face_of }
+        let part_of = |handle: u32| part_of[tracer.polygon_of(handle)].unwrap_or((handle, 0));
+        let (body_of, face_of) = handles.map(part_of).unzip();
+        Self { bodies, body_of, face_of }
     }
 
     /// The body that the polygon with this handle belongs to.
@@ -51,7 +49,7 @@ impl Bodies {
 
     /// The body of this polygon alone.
     pub fn facet_of(&self, handle: u32) -> u32 {
-        self.facet_of[handle as usize]
+        handle
     }
 
     /// The face of its body that this polygon is part of.

@@ -26,6 +26,12 @@ const DOUBT: f64 = 16.0;
 /// What takes the place of doubt where the kinks are known.
 const ACROSS: f64 = 4.0;
 
+/// Along an axis on which the error falls faster than this with every point, cells are not cut.
+const EASY: f64 = 0.15;
+
+/// So far away from an apex, as a share of the way, it shows where kinks leave it.
+const AWAY: f64 = 1e-6;
+
 /// Share of the largest difference of values that a rule of one point may be off by about a singularity.
 const UNTOLD: f64 = 0.1;
 
@@ -44,8 +50,11 @@ pub struct Cell {
     value: f64,
     /// By how much the error falls from a rule of n to one of n + 1 points an axis.
     decay: f64,
-    /// Error of the last rule, were the constants one.
+    /// Error of the last rule, were the constants one, and of the one before it.
     envelope: f64,
+    before: f64,
+    /// So many points an axis it had less.
+    steps: i32,
     change: f64,
     error: f64,
 }
@@ -54,17 +63,26 @@ impl Cell {
     /// A cell not yet looked at.
     pub fn new(corners: [Vec3; 4], term: usize) -> Self {
         let nature = Nature::Rough;
-        Self { corners, term, nature, rung: 0, value: 0.0, decay: SLOWEST, envelope: 0.0, change: 0.0, error: 0.0 }
+        Self {
+            corners,
+            term,
+            nature,
+            rung: 0,
+            value: 0.0,
+            decay: SLOWEST,
+            envelope: 0.0,
+            before: 0.0,
+            steps: 0,
+            change: 0.0,
+            error: 0.0,
+        }
     }
 
     /// The first two rules; a third where kinks can hide from them.
     fn begin(&mut self, integrand: &mut Integrand) {
         self.nature = integrand.nature(self.term, &self.corners);
         match self.nature {
-            // Gauss rules converge as ρ^(−2n), ρ the sum of the axes of the ellipse about ±1 that reaches the singularity.
-            Nature::Smooth { reach } if reach > 1.0 => {
-                self.decay = (reach - (reach * reach - 1.0).sqrt()).powi(2).min(SLOWEST);
-            }
+            Nature::Smooth { decays: [one, other] } => self.decay = one.max(other).min(SLOWEST),
             Nature::Kinked(_) => self.lie_across(integrand),
             _ => {}
         }
@@ -103,13 +121,18 @@ impl Cell {
         if rung == 1 {
             self.envelope = spread * self.decay.sqrt();
         }
-        self.envelope = change.max(self.envelope) * self.decay.max(FIRST[rung.min(FIRST.len() - 1)]).powi(steps);
+        // Where the rate that was seen is slower than the one expected, it is the better judge.
+        let before = change.max(self.envelope);
+        let seen = if rung == 1 { 0.0 } else { (change / self.before).powf(1.0 / f64::from(self.steps)) };
+        let decay = self.decay.max(FIRST[rung.min(FIRST.len() - 1)]).max(seen.min(SLOWEST));
+        self.envelope = before * decay.powi(steps);
+        (self.before, self.steps) = (before, steps);
         self.error = match self.nature {
             _ if self.decay < SLOWEST => CAUTION * self.envelope,
             Nature::Kinked(_) => ACROSS * change.max(0.5 * self.change),
             _ => DOUBT * change.max(0.5 * self.change),
         };
-        if matches!(self.nature, Nature::Smooth { reach } if reach <= 1.0) {
+        if self.decay == SLOWEST && matches!(self.nature, Nature::Smooth { .. }) {
             // Parts of a singularity look like the whole: where rules agree by luck on one of them they do on all.
             self.error = self.error.max(UNTOLD * spread / (LADDER[rung] * LADDER[rung]) as f64);
         }
@@ -149,7 +172,7 @@ impl Cell {
     }
 
     /// True where smaller cells promise more than longer rules.
-    fn wants_quarters(&self) -> bool {
+    fn wants_parts(&self) -> bool {
         match self.nature {
             Nature::Rough => true,
             Nature::Kinked(_) => self.rung >= 4,
@@ -164,7 +187,8 @@ impl Cell {
         let (mut sum, mut area) = (0.0, 0.0);
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         // Kinks leave or enter the lines across at the ends of panels.
-        let panels = Panels::between(integrand, &kinks, &[[a, d], [b, c]]);
+        let near = if a == d { [a + AWAY * (b - a), a + AWAY * (c - a)] } else { [a, d] };
+        let panels = Panels::between(integrand, &kinks, &[near, [b, c]]);
         for (t, wt) in panels.points(rule) {
             let (start, end) = (a + t * (d - a), b + t * (c - b));
             let slope = (1.0 - t) * (b - a) + t * (c - d);
@@ -187,11 +211,17 @@ impl Cell {
         }
     }
 
-    fn quarters(&self) -> [[Vec3; 4]; 4] {
+    /// What to go on with instead: quarters, or halves where singularities are across one axis alone.
+    fn parts(&self) -> impl Iterator<Item = [Vec3; 4]> {
         let [a, b, c, d] = self.corners;
         let (ab, bc, cd, da) = (0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + d), 0.5 * (d + a));
         let middle = 0.5 * (ab + cd);
-        [[a, ab, middle, da], [ab, b, bc, middle], [middle, bc, c, cd], [da, middle, cd, d]]
+        let parts = match self.nature {
+            Nature::Smooth { decays: [one, other] } if other < EASY.min(one) => vec![[a, ab, cd, d], [ab, b, c, cd]],
+            Nature::Smooth { decays: [one, other] } if one < EASY.min(other) => vec![[a, b, bc, da], [da, bc, c, d]],
+            _ => vec![[a, ab, middle, da], [ab, b, bc, middle], [middle, bc, c, cd], [da, middle, cd, d]],
+        };
+        parts.into_iter()
     }
 }
 
@@ -243,11 +273,16 @@ pub fn integrate(cells: &mut Vec<Cell>, tolerance: f64, integrand: &mut Integran
     for cell in cells.iter_mut() {
         cell.begin(integrand);
     }
+    let mut best = Sum { value: 0.0, error: f64::INFINITY };
     loop {
         let error: f64 = cells.iter().map(|cell| cell.error).sum();
         let worst = cells.iter().map(|cell| cell.error).fold(0.0, f64::max);
+        // New cells know less than what they replace: where points run out, go back to the best sum there was.
+        if error < best.error {
+            best = Sum { value: cells.iter().map(|cell| cell.value).sum(), error };
+        }
         if error <= tolerance || integrand.n_points > most_points {
-            return Sum { value: cells.iter().map(|cell| cell.value).sum(), error };
+            return best;
         }
         // Refine the worst, and where cells are many all that are nearly as bad.
         let bar = if cells.len() > 16 { 0.25 * worst } else { worst };
@@ -255,9 +290,9 @@ pub fn integrate(cells: &mut Vec<Cell>, tolerance: f64, integrand: &mut Integran
             if cells[k].error < bar {
                 continue;
             }
-            if cells[k].wants_quarters() {
+            if cells[k].wants_parts() {
                 let cell = cells.swap_remove(k);
-                for corners in cell.quarters() {
+                for corners in cell.parts() {
                     let mut part = Cell::new(corners, cell.term);
                     part.begin(integrand);
                     cells.push(part);

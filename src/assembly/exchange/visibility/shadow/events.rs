@@ -20,10 +20,12 @@ pub fn find(part: &[Vec3], target: &[Vec3], edges: &[Edge], points: &mut Vec<Vec
         }
     }
     // Where an edge passes all of a side at once, or of another edge, because both lie in one plane.
+    points.clear();
     for (e, edge) in edges.iter().enumerate() {
         for other in edges[e + 1..].iter().copied().filter(|other| other.owner != edge.owner).chain(sides_of(target)) {
             if edge.is_coplanar(&other) {
                 add(part, normal, size, edge, edge.far_end(&other), std::iter::empty(), lines);
+                points.extend(edge.crossing(&other));
             }
         }
     }
@@ -31,8 +33,7 @@ pub fn find(part: &[Vec3], target: &[Vec3], edges: &[Edge], points: &mut Vec<Vec
         return;
     }
 
-    // Where a corner between edges that take part passes a side of the target or another edge.
-    points.clear();
+    // Where a corner between edges that take part, or a point in which two of them meet, passes a side of the target or another edge.
     for edge in edges {
         for point in [edge.from, edge.to] {
             if !points.contains(&point) {
@@ -41,8 +42,8 @@ pub fn find(part: &[Vec3], target: &[Vec3], edges: &[Edge], points: &mut Vec<Vec
         }
     }
     for &point in points.iter() {
-        let apart = |edge: &Edge| edge.from != point && edge.to != point;
-        let constraints = || sides_of(target).chain(edges.iter().copied().filter(|edge| apart(edge)));
+        let apart = |edge: &Edge| edge.from != point && edge.to != point && !edge.touches(point);
+        let constraints = || sides_of(target).chain(edges.iter().copied()).filter(apart);
         for (k, edge) in constraints().enumerate() {
             let others = constraints().enumerate().filter(|(other, _)| *other != k).map(|(_, edge)| edge);
             add(part, normal, size, &edge, point, others, lines);

@@ -13,6 +13,9 @@ use std::f64::consts::TAU;
 /// Rounding of a height over a plane through an edge and a point, relative to the lengths in it: a few ulp.
 const FLAT: f64 = 4e-15;
 
+/// Rounding of a point where bodies touch, relative to its coordinates: an ulp on either side.
+const TOUCH: f64 = 2.0 * f64::EPSILON;
+
 /// Sine of an angle between an edge and a plane in which it is to lie.
 const COPLANAR: f64 = 1e-9;
 
@@ -48,6 +51,27 @@ impl Edge {
         normal.dot(along).abs() <= COPLANAR * normal.length() * along.length()
     }
 
+    /// Where it meets another one of its plane, if both do so in an inner point or an end.
+    pub fn crossing(&self, other: &Self) -> Option<Vec3> {
+        let (side, along) = (self.to - self.from, other.to - other.from);
+        let turn = side.cross(along);
+        if turn.length() <= COPLANAR * side.length() * along.length() {
+            return None;
+        }
+        let share = (other.from - self.from).cross(along).dot(turn) / turn.length_squared();
+        let point = self.from + share * side;
+        let is_within = |share: f64| (-COPLANAR..=1.0 + COPLANAR).contains(&share);
+        (is_within(share) && is_within((point - other.from).dot(along) / along.length_squared())).then_some(point)
+    }
+
+    /// True if a point lies in its line within rounding.
+    pub fn touches(&self, point: Vec3) -> bool {
+        let grain = TOUCH * point.abs().max(self.from.abs()).max(self.to.abs()).max_element();
+        let side = self.to - self.from;
+        let flat = FLAT * point.distance(self.from) + 2.0 * grain;
+        self.height_of(point).length_squared() <= flat * flat * side.length_squared()
+    }
+
     /// On which side these points lie, seen from anywhere in the hull of `eyes`: above is hidden.
     pub fn lie(&self, eyes: &[Vec3], points: &[Vec3]) -> Lie {
         match self.sides(eyes, points) {
@@ -65,7 +89,8 @@ impl Edge {
         let reach = eyes.iter().map(|x| x.distance_squared(self.from)).fold(0.0, f64::max);
         for y in points {
             let slope = self.height_of(*y);
-            let flat = FLAT * (length * reach * y.distance_squared(self.from)).sqrt();
+            let grain = FLAT * y.distance(self.from) + TOUCH * y.abs().max(self.from.abs()).max_element();
+            let flat = grain * (length * reach).sqrt();
             for x in eyes {
                 let height = slope.dot(*x - self.from);
                 above |= height > flat;

@@ -10,8 +10,8 @@ use std::ops::Range;
 /// What an integrand is like on a cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Nature {
-    /// Analytic, up to singularities at this distance from the centre in units of the cell's radius.
-    Smooth { reach: f64 },
+    /// Analytic: the error falls by this much with every point along either axis.
+    Smooth { decays: [f64; 2] },
     /// Its second derivative jumps on these curves, analytic between them.
     Kinked(Range<usize>),
     /// Its second derivative may jump on curves that are not known.
@@ -59,6 +59,6 @@ impl Integrand<'_> {
         if self.kinks.len() > first {
             return Nature::Kinked(first..self.kinks.len());
         }
-        Nature::Smooth { reach: nature::reach(corners, self.normal, target, edges) }
+        Nature::Smooth { decays: nature::decays(corners, self.normal, target, edges) }
     }
 }

@@ -7,8 +7,18 @@ use super::events::sides_of;
 use super::flux::Edge;
 use crate::geometry::Vec3;
 
-/// So many points speak for a cell: its corners, the middles of its sides, its centre.
+/// So many points speak for a cell: its corners, the middles of its sides and of a diagonal.
 const N_EYES: usize = 9;
+
+/// The ends and the middle, by number, of the sides of the two triangles that a diagonal makes of a cell.
+const SIDES: [[usize; 3]; 5] = [[0, 4, 1], [1, 5, 2], [2, 6, 3], [3, 7, 0], [0, 8, 2]];
+
+/// True if a quadratic function of these values is positive all over the cell: Bézier's coefficients on both triangles are, of which it is a
+/// mean.
+fn is_positive(values: [f64; N_EYES]) -> bool {
+    values[..4].iter().all(|v| *v > 0.0)
+        && SIDES.iter().all(|&[from, middle, to]| 4.0 * values[middle] > values[from] + values[to])
+}
 
 /// The planes through the points of a cell and one edge, normals to the hidden side.
 struct Sheaf {
@@ -48,7 +58,7 @@ pub fn find(&[a, b, c, d]: &[Vec3; 4], target: &[Vec3], edges: &[Edge], into: &m
         return;
     }
     let middle = |p: Vec3, q: Vec3| 0.5 * (p + q);
-    let eyes = [a, middle(a, b), b, middle(b, c), c, middle(c, d), d, middle(d, a), 0.25 * (a + b + c + d)];
+    let eyes = [a, b, c, d, middle(a, b), middle(b, c), middle(c, d), middle(d, a), middle(a, c)];
     let through = |edge: Edge| Sheaf { edge, normals: eyes.map(|x| edge.plane_from(x)) };
     let sheaves: Vec<Sheaf> = edges.iter().copied().chain(sides_of(target)).map(through).collect();
     let away = (target[1] - target[0]).cross(target[2] - target[0]);
@@ -58,8 +68,8 @@ pub fn find(&[a, b, c, d]: &[Vec3; 4], target: &[Vec3], edges: &[Edge], into: &m
     let is_out_of_sight = |i: usize, j: usize| {
         let ways: [Vec3; N_EYES] = std::array::from_fn(|k| sheaves[i].normals[k].cross(sheaves[j].normals[k]));
         let sign = -ways[0].dot(away).signum();
-        let is_steady = ways.iter().all(|way| sign * way.dot(away) < 0.0);
-        let outside = |other: &Sheaf| other.normals.iter().zip(&ways).all(|(n, way)| sign * n.dot(*way) < 0.0);
+        let is_steady = is_positive(ways.map(|way| -sign * way.dot(away)));
+        let outside = |other: &Sheaf| is_positive(std::array::from_fn(|k| -sign * other.normals[k].dot(ways[k])));
         is_steady && sheaves.iter().enumerate().any(|(l, other)| l != i && l != j && outside(other))
     };
 
@@ -71,7 +81,7 @@ pub fn find(&[a, b, c, d]: &[Vec3; 4], target: &[Vec3], edges: &[Edge], into: &m
             for (l, third) in sheaves.iter().enumerate().skip(j + 1) {
                 let is_apart = third.edge.owner != edges[i].owner && third.edge.owner != edges[j].owner;
                 let twist: [f64; N_EYES] = std::array::from_fn(|k| third.normals[k].dot(ways[k]));
-                if !is_apart || twist.iter().all(|t| t * twist[0] > 0.0) {
+                if !is_apart || is_positive(twist.map(|t| t * twist[0].signum())) {
                     continue;
                 }
                 // In one plane, two edges pass each other or have a corner in common: cells end at such lines.

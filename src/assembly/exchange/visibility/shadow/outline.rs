@@ -115,10 +115,11 @@ impl Desk {
     }
 
     /// Pushes the outlines of those faces of a body that may be in the way, each from the part in front of it: together the front faces hide
-    /// what the body does, and none of them what another does. False where the target may be inside the body.
+    /// what the body does, and none of them what another does. False where the target may be seen inside the body.
     fn outline_faces(&mut self, stage: &Stage, number: u32, part: &[Vec3]) -> bool {
         let body = stage.bodies.get(number);
-        if body.opening.is_some() && !body.excludes(&self.targets[..self.n_target], stage.target_normal) {
+        let sees_into = body.opening.is_some_and(|opening| body.faces[opening].lie(part) != Lie::Below);
+        if sees_into && !body.excludes(&self.targets[..self.n_target], stage.target_normal) {
             return false;
         }
         let handles = stage.candidates.iter().filter(|handle| stage.bodies.body_of(**handle) == number);

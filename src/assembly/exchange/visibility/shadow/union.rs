@@ -10,8 +10,8 @@ use super::{Desk, Term};
 use crate::geometry::Vec3;
 use std::ops::Range;
 
-/// More lines than this are left to refinement.
-const MOST_LINES: usize = 64;
+/// More lines than this are left to refinement: they would cut a part into thousands of pieces.
+const MOST_LINES: usize = 192;
 
 impl Desk {
     /// Adds sign · F(target ∩ hidden sides of the active edges ∩ (what the first n outlines hide)): the union of sets is the sum of each
