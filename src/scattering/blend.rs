@@ -1,12 +1,13 @@
 //! Two surfaces mixed.
 
+use super::choice::{Choice, choose};
 use super::parameter::{Examination, ParameterError};
 use super::{Brdf, Deltas};
 use crate::geometry::Vec3;
 use std::sync::Arc;
 
 /// f = (1 − w) f₀ + w f₁, mirror-like terms and albedos likewise: Mitsuba 3's `blendbsdf` with a constant weight. What laws both keep, the
-/// mixture keeps. Samples one of the two by its weight.
+/// mixture keeps. Samples the smooth part of one of the two, by their weights.
 #[derive(Clone, Debug)]
 pub struct Blend {
     parts: [Arc<dyn Brdf>; 2],
@@ -29,6 +30,13 @@ impl Blend {
         Ok(Self { parts, weight })
     }
 
+    /// Chance that a sample of the smooth part is one of the first: by the weights of what is smooth in each.
+    fn share(&self, outgoing: Vec3) -> f64 {
+        let smooth = |k: usize| 1.0 - self.parts[k].mirror_share(outgoing);
+        let [first, second] = [(1.0 - self.weight) * smooth(0), self.weight * smooth(1)];
+        if first + second > 0.0 { first / (first + second) } else { 1.0 - self.weight }
+    }
+
     fn mixed(&self, of: impl Fn(&dyn Brdf) -> f64) -> f64 {
         let [first, second] = &self.parts;
         (1.0 - self.weight) * of(&**first) + self.weight * of(&**second)
@@ -45,17 +53,16 @@ impl Brdf for Blend {
     }
 
     fn sample(&self, outgoing: Vec3, [u, v]: [f64; 2]) -> Option<Vec3> {
-        // Pick a part with the first number, then use the rest of it again.
         let [first, second] = &self.parts;
-        if u < self.weight {
-            second.sample(outgoing, [u / self.weight, v])
-        } else {
-            first.sample(outgoing, [((u - self.weight) / (1.0 - self.weight)).min(1.0 - 0.5 * f64::EPSILON), v])
+        match choose(self.share(outgoing), u) {
+            Choice::First(u) => first.sample(outgoing, [u, v]),
+            Choice::Second(u) => second.sample(outgoing, [u, v]),
         }
     }
 
     fn pdf(&self, outgoing: Vec3, incident: Vec3) -> f64 {
-        self.mixed(|part| part.pdf(outgoing, incident))
+        let ([first, second], share) = (&self.parts, self.share(outgoing));
+        share * first.pdf(outgoing, incident) + (1.0 - share) * second.pdf(outgoing, incident)
     }
 
     fn albedo(&self, band: usize, outgoing: Vec3) -> f64 {
@@ -69,6 +76,10 @@ impl Brdf for Blend {
             [0, 1].map(|k| terms.get(k).map(|term| (term.incident, share * term.weight))).into_iter().flatten()
         });
         parts.fold(Deltas::NONE, |sum, (incident, weight)| sum.with(incident, weight))
+    }
+
+    fn mirror_share(&self, outgoing: Vec3) -> f64 {
+        self.mixed(|part| part.mirror_share(outgoing))
     }
 
     fn is_transmissive(&self) -> bool {

@@ -50,6 +50,12 @@ pub trait Brdf: Debug + Send + Sync {
         Deltas::NONE
     }
 
+    /// A good chance, in [0, 1], with which to follow a mirror-like term rather than a sample of the smooth part: 0 where nothing mirrors,
+    /// 1 where nothing is smooth. Cheap, unlike albedos; any number strictly between is as right, with more noise.
+    fn mirror_share(&self, outgoing: Vec3) -> f64 {
+        if self.deltas(0, outgoing).is_empty() { 0.0 } else { 0.5 }
+    }
+
     /// Whether light passes to the other side.
     fn is_transmissive(&self) -> bool {
         false

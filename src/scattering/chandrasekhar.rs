@@ -16,7 +16,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 ///
 /// with Chandrasekhar's H function. For w = 1 it is not Lambertian and yet white at every angle: the glossy furnace. Reciprocal.
 ///
-/// H is tabulated when the surface is made (some 10 ms) from its explicit form
+/// H is tabulated when the surface is made (some 30 ms a band) from its explicit form
 ///
 /// ```text
 /// ln H(μ) = −(μ/π) ∫₀^{π/2} ln(1 − w θ cotθ) / (cos²θ + μ² sin²θ) dθ

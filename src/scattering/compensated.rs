@@ -1,12 +1,14 @@
 //! A rough conductor given back what it loses between facets.
 
 use super::Brdf;
+use super::choice::{Choice, choose};
 use super::graded_table::GradedTable;
 
+use super::metal::Metal;
 use super::microfacet::Microfacets;
 use super::parameter::{Examination, ParameterError};
 use super::quadrature::{Quadrature, rule};
-use super::rough_conductor::{Metal, RoughConductor, reflected_albedo};
+use super::rough_conductor::{RoughConductor, reflected_albedo};
 use crate::geometry::Vec3;
 use crate::sampling::warp;
 use std::f64::consts::FRAC_1_PI;
@@ -20,7 +22,7 @@ use std::f64::consts::FRAC_1_PI;
 /// E is the albedo of the facets were they perfect mirrors, Ē = 2 ∫ E μ dμ its mean. Of perfect mirrors (F = 1, κ = 1) it is white at every
 /// angle: a rough furnace. Reciprocal; albedo E_F + κ (1 − E) ≤ 1. κ is Fdez-Agüera's (2019) sum over numbers of meetings.
 ///
-/// E is tabulated when the surface is made (some 0.1 s). Samples the facets, or the cosine, by E and 1 − E.
+/// E is tabulated when the surface is made (some 0.5 s). Samples the facets, or the cosine, by E and 1 − E.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CompensatedConductor {
     once: RoughConductor,
@@ -89,11 +91,10 @@ impl Brdf for CompensatedConductor {
         if outgoing.z <= 0.0 {
             return None;
         }
-        let share = self.share(outgoing);
-        if u < share {
-            return self.once.sample(outgoing, [u / share, v]);
+        match choose(self.share(outgoing), u) {
+            Choice::First(u) => self.once.sample(outgoing, [u, v]),
+            Choice::Second(u) => Some(warp::cosine_hemisphere([u, v]).into()),
         }
-        Some(warp::cosine_hemisphere([((u - share) / (1.0 - share)).min(1.0 - f64::EPSILON), v]).into())
     }
 
     fn pdf(&self, outgoing: Vec3, incident: Vec3) -> f64 {

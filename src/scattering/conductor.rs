@@ -2,8 +2,8 @@
 
 use super::Brdf;
 use super::deltas::Deltas;
+use super::metal::Metal;
 use super::parameter::ParameterError;
-use super::rough_conductor::Metal;
 use crate::geometry::Vec3;
 
 /// A mirror of metal, Mitsuba 3's `conductor`: one mirror-like term of weight F(cosθ), no smooth part.
@@ -55,6 +55,10 @@ impl Brdf for Conductor {
             return Deltas::NONE;
         }
         Deltas::mirror(outgoing, self.metal.reflectance(band, outgoing.z.min(1.0)))
+    }
+
+    fn mirror_share(&self, outgoing: Vec3) -> f64 {
+        if self.deltas(0, outgoing).is_empty() { 0.0 } else { 1.0 }
     }
 
     fn lambertian(&self) -> Option<&[f64]> {

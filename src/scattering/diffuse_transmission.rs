@@ -1,6 +1,7 @@
 //! Paper, a lampshade: diffuse on both sides.
 
 use super::Brdf;
+use super::choice::{Choice, choose};
 use super::parameter::{Examination, ParameterError};
 use crate::geometry::Vec3;
 use crate::sampling::warp;
@@ -52,13 +53,12 @@ impl Brdf for DiffuseTransmission {
         if outgoing.z == 0.0 {
             return None;
         }
-        let back = u < self.share;
-        let u = if back { u / self.share } else { (u - self.share) / (1.0 - self.share) };
-        let mut incident = Vec3::from(warp::cosine_hemisphere([u.min(BELOW_ONE), v]));
-        if back != (outgoing.z > 0.0) {
-            incident.z = -incident.z;
-        }
-        Some(incident)
+        let (u, side) = match choose(self.share, u) {
+            Choice::First(u) => (u, outgoing.z.signum()),
+            Choice::Second(u) => (u, -outgoing.z.signum()),
+        };
+        let [x, y, z] = warp::cosine_hemisphere([u, v]);
+        Some(Vec3::new(x, y, side * z))
     }
 
     fn pdf(&self, outgoing: Vec3, incident: Vec3) -> f64 {
@@ -83,6 +83,3 @@ impl Brdf for DiffuseTransmission {
         format!("difftrans reflectance={:?} transmittance={:?}", self.reflectance, self.transmittance)
     }
 }
-
-/// The largest number below 1.
-const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;

@@ -17,7 +17,7 @@ use super::graded_table::GradedTable;
 use super::half_vectors::{Lobe, Tail};
 use super::parameter::{Examination, ParameterError};
 use crate::geometry::Vec3;
-use crate::stats::special::{complementary_error_function, ln_gamma};
+use crate::stats::special::{complementary_error_function, ln_beta};
 use std::f64::consts::{PI, TAU};
 use std::sync::LazyLock;
 
@@ -61,6 +61,11 @@ static SCALED_COMPLEMENT: LazyLock<GradedTable> = LazyLock::new(|| {
         (a * a).exp() * complementary_error_function(a)
     })
 });
+
+/// erfc(a), a ≥ 0, to 1e-16.
+fn complement(a: f64) -> f64 {
+    if a < SHALLOW { (-a * a).exp() * SCALED_COMPLEMENT.at(a / SHALLOW) } else { 0.0 }
+}
 
 impl Microfacets {
     /// Roughness α along the local x and y axes.
@@ -157,10 +162,7 @@ impl Microfacets {
         match self.masking {
             Masking::Separable => 1.0 / ((1.0 + first) * (1.0 + second)),
             Masking::Correlated if same_side => 1.0 / (1.0 + (first + second)),
-            Masking::Correlated if first + second < f64::MAX => {
-                let (first, second) = if first <= second { (first, second) } else { (second, first) };
-                (ln_gamma(1.0 + first) + ln_gamma(1.0 + second) - ln_gamma(2.0 + (first + second))).exp()
-            }
+            Masking::Correlated if first + second < f64::MAX => ln_beta(1.0 + first, 1.0 + second).exp(),
             Masking::Correlated => 0.0,
         }
     }
@@ -215,7 +217,7 @@ impl Microfacets {
 /// with Newton's method, kept within a bracket. Some ten error functions.
 fn visible_slope(cosine: f64, sine: f64, uniform: f64) -> f64 {
     let distribution = |p: f64| {
-        let below = if p < 0.0 { complementary_error_function(-p) } else { 2.0 - complementary_error_function(p) };
+        let below = if p < 0.0 { complement(-p) } else { 2.0 - complement(p) };
         0.5 * (cosine * PI.sqrt() * below + sine * (-p * p).exp())
     };
     let mut low = -GAUSSIAN_REACH;

@@ -67,6 +67,12 @@ impl Base {
         Self::new(diffuse_reflectance, index::POLYPROPYLENE, index::AIR, false)
     }
 
+    /// The share of the light that is mirrored by a coat of this reflectance, roughly, kept within [0.1, 0.9].
+    pub(super) fn mirror_share(&self, mirrored: f64) -> f64 {
+        let base = self.diffuse_reflectance.iter().sum::<f64>() / self.diffuse_reflectance.len().max(1) as f64;
+        (mirrored / (mirrored + (1.0 - mirrored) * base)).clamp(0.1, 0.9)
+    }
+
     /// d/(1 − d' R) of a coat that reflects the share R back to the base.
     pub(super) fn gain(&self, band: usize, internal: f64) -> f64 {
         let d = self.diffuse_reflectance[band];
@@ -133,6 +139,10 @@ impl Brdf for Plastic {
             return Deltas::NONE;
         }
         Deltas::mirror(outgoing, self.specular_reflectance[band] * self.reflectance(outgoing.z))
+    }
+
+    fn mirror_share(&self, outgoing: Vec3) -> f64 {
+        if outgoing.z > 0.0 { self.base.mirror_share(self.reflectance(outgoing.z)) } else { 0.0 }
     }
 
     fn lambertian(&self) -> Option<&[f64]> {

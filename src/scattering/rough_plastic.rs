@@ -1,13 +1,15 @@
 //! Rough plastic: paint under a clear coat of small facets.
 
 use super::Brdf;
+use super::choice::{Choice, choose};
 use super::fresnel;
 use super::graded_table::GradedTable;
 use super::half_vectors::{Rim, integrate};
 use super::microfacet::Microfacets;
 use super::parameter::{Examination, ParameterError};
 use super::plastic::Base;
-use super::refracting_facets::RefractingFacet;
+use super::quadrature::gauss_legendre;
+use super::refracting_facets::{self, RefractingFacet};
 use super::rough_conductor::{glossy, glossy_pdf, reflected_albedo, sample_glossy};
 use crate::geometry::Vec3;
 use crate::sampling::warp;
@@ -19,26 +21,32 @@ use std::f64::consts::FRAC_1_PI;
 /// f = F D G₂/(4 i_z o_z) + T(i_z) T(o_z) d / (π η² (1 − d' R))
 /// ```
 ///
-/// T(μ) is what the facets let through, once and without a second meeting, and R = 1 − 2 ∫ T μ dμ/η² what the coat sends back to the
-/// base from inside, by the étendue of what it lets out: inside no light is lost between facets (Mitsuba integrates R with that
-/// loss). d' = d where colours saturate, else 1. Reciprocal whatever T is; and with E what the facets reflect,
+/// T(μ) is what the facets let through from outside and R, the mean over the hemisphere, what they reflect from inside, both once and without
+/// a second meeting; d' = d where colours saturate (`nonlinear`), else 1. Reciprocal whatever T is. With E what the facets reflect from
+/// outside, and 2 ∫ T μ dμ/η² ≤ 1 − R what they let out (étendue is the same both ways),
 ///
 /// ```text
-/// albedo = E(o_z) + T(o_z) d (1 − R)/(1 − d' R) ≤ E + T ≤ 1
+/// albedo = E(o_z) + T(o_z) d (2 ∫ T μ dμ/η²)/(1 − d' R) ≤ E + T ≤ 1
 /// ```
 ///
-/// T is tabulated when the surface is made (some 0.1 s), and the table is the surface. Samples either part by its approximate share.
+/// What is lost between facets is absorbed, on the way in, under the coat and on the way out. T is tabulated when the surface is made (up to a
+/// second, with R), and the table is the surface. Samples either part by its approximate share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoughPlastic {
     base: Base,
     facets: Microfacets,
     specular_reflectance: Vec<f64>,
     passed: GradedTable,
+    /// R
     internal: f64,
+    /// 2 ∫ T μ dμ/η²
+    let_out: f64,
 }
 
 /// Cosines below 2⁻¹² are on a straight line.
 const N_PANELS: usize = 12;
+/// Nodes of the mean over the hemisphere that is R, which has a bend at the critical angle: right to 1e-5.
+const N_INTERNAL: usize = 12;
 /// The cosine whose T stands for that of 0.
 const GRAZING: f64 = 1e-6;
 
@@ -58,8 +66,12 @@ impl RoughPlastic {
         let passed = GradedTable::new(N_PANELS, passed(&facets, base.relative_index, GRAZING), |cosine| {
             passed(&facets, base.relative_index, cosine)
         });
-        let internal = 1.0 - passed.hemispherical_mean() / (base.relative_index * base.relative_index);
-        Ok(Self { base, facets, specular_reflectance, passed, internal })
+        let let_out = passed.hemispherical_mean() / (base.relative_index * base.relative_index);
+        let rule = gauss_legendre(N_INTERNAL);
+        let inside = |cosine: f64| returned(&facets, base.relative_index.recip(), cosine);
+        let internal: f64 = rule.iter().map(|(u, weight)| weight * 2.0 * u * inside(*u)).sum();
+        let internal = internal.min(1.0 - let_out);
+        Ok(Self { base, facets, specular_reflectance, passed, internal, let_out })
     }
 
     fn coat(&self, cosine: f64) -> f64 {
@@ -68,9 +80,7 @@ impl RoughPlastic {
 
     /// Chance that a sample is mirrored.
     fn share(&self, outgoing: Vec3) -> f64 {
-        let mirror = self.coat(outgoing.z);
-        let base = self.base.diffuse_reflectance.iter().fold(0.0, |sum, d| sum + d) / self.n_bands() as f64;
-        (mirror / (mirror + (1.0 - mirror) * base)).clamp(0.1, 0.9)
+        self.base.mirror_share(self.coat(outgoing.z))
     }
 }
 
@@ -83,6 +93,21 @@ fn passed(facets: &Microfacets, eta: f64, cosine: f64) -> f64 {
         let visible = facets.joint(facets.lambda(bent.refracted), masked, false);
         let facing = facet.facing / (facet.cosine * outgoing.z);
         facets.slope_density(facet.r_squared) * (1.0 - bent.interface.reflectance) * visible * facing
+    })
+    .value
+}
+
+/// The share of light from this cosine that facets of relative index η reflect to where it came from.
+fn returned(facets: &Microfacets, eta: f64, cosine: f64) -> f64 {
+    let outgoing = Vec3::from(warp::around_z(cosine, 0.0));
+    let masked = facets.lambda(outgoing);
+    refracting_facets::integrate(outgoing, facets.lobe(), eta, |facet: &RefractingFacet| {
+        if facet.reflected.z <= 0.0 {
+            return 0.0;
+        }
+        let visible = facets.joint(facets.lambda(facet.reflected), masked, true);
+        let facing = facet.facing / (facet.cosine * outgoing.z);
+        facets.slope_density(facet.r_squared) * facet.interface.reflectance * visible * facing
     })
     .value
 }
@@ -107,11 +132,10 @@ impl Brdf for RoughPlastic {
         if outgoing.z <= 0.0 {
             return None;
         }
-        let share = self.share(outgoing);
-        if u < share {
-            return sample_glossy(&self.facets, outgoing, [u / share, v]);
+        match choose(self.share(outgoing), u) {
+            Choice::First(u) => sample_glossy(&self.facets, outgoing, [u, v]),
+            Choice::Second(u) => Some(warp::cosine_hemisphere([u, v]).into()),
         }
-        Some(warp::cosine_hemisphere([((u - share) / (1.0 - share)).min(1.0 - f64::EPSILON), v]).into())
     }
 
     fn pdf(&self, outgoing: Vec3, incident: Vec3) -> f64 {
@@ -128,7 +152,7 @@ impl Brdf for RoughPlastic {
             return 0.0;
         }
         let mirrored = reflected_albedo(&self.facets, outgoing, |cosine| self.coat(cosine)).value;
-        let base = self.passed.at(outgoing.z.min(1.0)) * (1.0 - self.internal) * self.base.gain(band, self.internal);
+        let base = self.passed.at(outgoing.z.min(1.0)) * self.let_out * self.base.gain(band, self.internal);
         self.specular_reflectance[band] * mirrored + base
     }
 

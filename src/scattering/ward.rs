@@ -1,6 +1,7 @@
 //! Ward's anisotropic lobe, in its bounded form.
 
 use super::Brdf;
+use super::choice::{Choice, choose};
 use super::half_vectors::{Rim, Tail, integrate};
 use super::parameter::{Examination, ParameterError};
 use super::quadrature::Quadrature;
@@ -95,11 +96,11 @@ impl Brdf for Ward {
         if outgoing.z <= 0.0 {
             return None;
         }
-        if u >= self.share {
-            let rest = ((u - self.share) / (1.0 - self.share)).min(1.0 - f64::EPSILON);
-            return Some(warp::cosine_hemisphere([rest, v]).into());
-        }
-        let radius = (-(-u / self.share).ln_1p()).sqrt();
+        let u = match choose(self.share, u) {
+            Choice::First(u) => u,
+            Choice::Second(u) => return Some(warp::cosine_hemisphere([u, v]).into()),
+        };
+        let radius = (-(-u).ln_1p()).sqrt();
         let (sin, cos) = (TAU * v).sin_cos();
         let normal = Vec3::new(-self.alpha[0] * radius * cos, -self.alpha[1] * radius * sin, 1.0).normalize();
         let incident = (2.0 * outgoing.dot(normal) * normal - outgoing).normalize();

@@ -110,7 +110,7 @@ pub fn test_sampler(
     sample: impl Fn([f64; 2]) -> Option<Vec3>,
     pdf: impl Fn(Vec3) -> f64,
 ) -> ChiSquared {
-    let mut probabilities = cells.integrate(16, pdf);
+    let mut probabilities = cells.integrate(12, pdf);
     probabilities.push((1.0 - probabilities.iter().sum::<f64>()).max(0.0));
     let mut counts = vec![0; probabilities.len()];
     let streams = Streams::new(0x5eed_1e57, purpose);

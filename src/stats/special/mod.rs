@@ -7,7 +7,7 @@ mod beta;
 mod gamma;
 
 pub(super) use beta::density as beta_density;
-pub use beta::{regularised_incomplete_beta, regularised_incomplete_beta_of};
+pub use beta::{ln_beta, regularised_incomplete_beta, regularised_incomplete_beta_of};
 pub use gamma::{regularised_lower_gamma, regularised_upper_gamma};
 
 use std::f64::consts::PI;

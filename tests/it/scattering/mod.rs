@@ -1,6 +1,7 @@
 //! Every BRDF × every law, and each against exact values.
 
 mod cubature;
+mod facets;
 mod laws;
 mod lobes;
 mod tables;

@@ -7,6 +7,7 @@ use etendue::scattering::{
     Brdf, Chandrasekhar, CompensatedConductor, Distribution, LommelSeeliger, Masking, Metal, Microfacets, Phong,
     Plastic, RoughConductor, fresnel,
 };
+use etendue::stats::special::ln_beta;
 
 /// Half a unit of the last digit given.
 fn digits(n: i32) -> f64 {
@@ -207,6 +208,27 @@ fn diffuse_fresnel_reflectances_match_the_closed_form() {
     // To leading order 2 ∫ F μ dμ = (n − 1)/3.
     let barely = fresnel::diffuse_reflectance(1.0 + 1e-9);
     assert!((barely / 1e-9 * 3.0 - 1.0).abs() < 1e-6, "{barely:e}");
+}
+
+#[test]
+fn logarithms_of_beta_functions_keep_their_digits() {
+    // In 90-digit arithmetic.
+    let cases = [
+        (1.5, 2.25, -1.4827261013362656836),
+        (3.0, 10.0, -6.4922398350204712289),
+        (9.75, 1e5, -100.00924489275722727),
+        (1.25, 1e30, -86.445212823698526312),
+        (12.0, 12.0, -16.602059876016601892),
+        (20.5, 4000.0, -129.24640232376213815),
+        (9.999, 10.001, -13.736229121870218939),
+        (1.0, 1.0, 0.0),
+    ];
+    for (a, b, exact) in cases {
+        for value in [ln_beta(a, b), ln_beta(b, a)] {
+            // Absolute in the logarithm is relative in B.
+            assert!((value - exact).abs() < 1e-13, "B({a}, {b}): {value} against {exact}");
+        }
+    }
 }
 
 #[test]
