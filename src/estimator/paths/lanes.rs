@@ -28,6 +28,12 @@ pub(super) fn set(vectors: &mut Vectors, k: usize, value: Vec3) {
     (vectors[0][k], vectors[1][k], vectors[2][k]) = (value.x, value.y, value.z);
 }
 
+/// Lanes worked out for n that are wanted: whole vectors, what is in the rest being nobody's.
+#[inline(always)]
+pub(super) fn whole(n: usize) -> usize {
+    n.next_multiple_of(8).min(N)
+}
+
 /// Something computed for all lanes: run by the widest instructions of this machine, which round as any others.
 trait Kernel {
     fn run(self);
@@ -87,7 +93,7 @@ impl Kernel for Turns<'_> {
     #[inline(always)]
     fn run(self) {
         let ([u, v], [nx, ny, nz], [dx, dy, dz]) = (self.uniform, self.normal, self.direction);
-        for k in 0..self.n.min(N) {
+        for k in 0..whole(self.n) {
             let [x, y, z] = warp::cosine_hemisphere([u[k], v[k]]);
             self.density[k] = warp::cosine_hemisphere_pdf([x, y, z]);
 
@@ -133,7 +139,7 @@ impl Weigh<'_> {
     #[inline(always)]
     fn each(self, gain: impl Fn(f64, f64) -> f64) {
         let (from, to, points) = (self.position, &self.points.position, self.points);
-        for k in 0..self.n.min(N) {
+        for k in 0..whole(self.n) {
             let (ox, oy, oz) = (to[0][k] - from[0][k], to[1][k] - from[1][k], to[2][k] - from[2][k]);
             let cosine = self.normal[0][k] * ox + self.normal[1][k] * oy + self.normal[2][k] * oz;
             let away = points.normal[0][k] * ox + points.normal[1][k] * oy + points.normal[2][k] * oz;

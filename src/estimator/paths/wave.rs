@@ -11,8 +11,8 @@ use super::super::bounces::Columns;
 use super::lanes::{self, Draw, Lanes, N, Points, Turns, Vectors, Weigh};
 use super::path_tracer::{PathTracer, Sampling};
 use super::reflection::Reflection;
-use super::stage::{Arrival, Vertex};
-use crate::geometry::Vec3;
+use super::stage::Vertex;
+use crate::geometry::{Ray, Vec3};
 use crate::sampling::{Streams, warp};
 use crate::scene::Side;
 
@@ -109,7 +109,7 @@ impl<'t, 'a> Wave<'t, 'a> {
 
     /// Draws the next block of every path.
     fn draw(&mut self) {
-        let samples = &self.sample[..self.n_alive];
+        let samples = &self.sample[..lanes::whole(self.n_alive)];
         let (streams, start, block) = (&self.streams, self.start, self.block);
         Draw { streams, start, samples, block, uniform: &mut self.uniform }.run();
         self.block = self.block.wrapping_add(1);
@@ -133,43 +133,42 @@ impl<'t, 'a> Wave<'t, 'a> {
             }
         }
 
-        // A point of the patch, and a direction of density cosθ/π, backwards.
+        // A point of the patch; and a direction of density cosθ/π, backwards, where the direction matters.
         let n_alive = self.n_alive;
         self.carried.iter_mut().for_each(|carried| carried.fill(1.0));
         self.draw();
         let [u, v, _] = self.uniform;
-        self.draw();
-        let [s, t, _] = self.uniform;
-        let frame = &stage.face(patch.facet, patch.side).frame;
+        let face = stage.face(patch.facet, patch.side);
+        let is_diffuse = matches!(face.reflection, Some(Reflection::Diffuse(_)));
+        if is_diffuse {
+            self.block = self.block.wrapping_add(1);
+        } else {
+            self.draw();
+        }
+        let parallelogram = patch.polygon.parallelogram();
         self.n_alive = 0;
         for k in 0..n_alive {
-            let given = Vec3::from(warp::cosine_hemisphere([s[k], t[k]]));
-            self.arrive(
-                k,
-                &Arrival {
-                    facet: patch.facet,
-                    side: patch.side,
-                    position: patch.polygon.sample([u[k], v[k]]),
-                    distance: 0.0,
-                    given,
-                },
-                -frame.to_world(given),
-                1.0,
-            );
+            let position = match parallelogram {
+                Some([corner, along, up]) => corner + u[k] * along + v[k] * up,
+                None => patch.polygon.sample([u[k], v[k]]),
+            };
+            let [s, t] = [self.uniform[0][k], self.uniform[1][k]];
+            let given = if is_diffuse { Vec3::Z } else { warp::cosine_hemisphere([s, t]).into() };
+            self.arrive(k, (patch.facet, patch.side), position, -face.frame.to_world(given), 1.0);
         }
     }
 
     /// Puts the path of lane k where its ray ends, in the first lane that is free; it ends on what is black. Lanes are freed in order, so the
     /// free one is not after k.
     #[inline]
-    fn arrive(&mut self, k: usize, arrival: &Arrival, arriving: Vec3, gain: f64) {
-        let face = self.tracer.stage.face(arrival.facet, arrival.side);
+    fn arrive(&mut self, k: usize, (facet, side): (usize, Side), position: Vec3, arriving: Vec3, gain: f64) {
+        let face = self.tracer.stage.face(facet, side);
         let Some(reflection) = &face.reflection else { return };
         let to = self.n_alive;
         self.n_alive += 1;
         (self.number[to], self.sample[to]) = (self.number[k], self.sample[k]);
-        self.place[to] = (arrival.facet as u32, arrival.side);
-        lanes::set(&mut self.position, to, arrival.position);
+        self.place[to] = (facet as u32, side);
+        lanes::set(&mut self.position, to, position);
         lanes::set(&mut self.normal, to, face.frame.z);
         lanes::set(&mut self.arriving, to, arriving);
         self.is_diffuse[to] = matches!(reflection, Reflection::Diffuse(_));
@@ -295,17 +294,19 @@ impl<'t, 'a> Wave<'t, 'a> {
             let gain = 1.0 / survival;
             self.n_rays += 1;
             let (facet, direction) = (self.place[k].0 as usize, lanes::get(&self.direction, k));
-            let Some(arrival) = stage.follow(facet, lanes::get(&self.position, k), direction) else { continue };
-            let density = stage.emitters.density(arrival.facet);
-            if density > 0.0 && arrival.side == Side::Front && tracer.sampling != Sampling::Emitters {
-                let by_point = density * arrival.distance * arrival.distance / arrival.given.z;
-                let weight = gain * tracer.sampling.weight(self.density[k], by_point);
+            let ray = Ray { origin: lanes::get(&self.position, k), direction };
+            let Some(hit) = stage.tracer.closest(&ray, Some(facet)) else { continue };
+            let density = stage.emitters.density(hit.polygon);
+            if density > 0.0 && hit.front && tracer.sampling != Sampling::Emitters {
+                let cosine = -direction.dot(stage.face(hit.polygon, Side::Front).frame.z);
+                let weight = gain * tracer.sampling.weight(self.density[k], density * hit.t * hit.t / cosine);
                 let totals = &mut self.totals[self.number[k] as usize * n_columns + column..];
-                let bands = self.carried.iter().zip(stage.emission(arrival.facet, arrival.side));
+                let bands = self.carried.iter().zip(stage.emission(hit.polygon, Side::Front));
                 let found = totals.iter_mut().zip(bands);
                 found.for_each(|(total, (carried, emission))| *total += carried[k] * weight * emission);
             }
-            self.arrive(k, &arrival, direction, gain);
+            let side = if hit.front { Side::Front } else { Side::Back };
+            self.arrive(k, (hit.polygon, side), ray.at(hit.t), direction, gain);
         }
     }
 }
