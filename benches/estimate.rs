@@ -1,10 +1,12 @@
-//! Sixteen samples a bundle of every estimator on the Cornell box at three sizes, and the tables that walks need; and light paths in rays a
-//! second, beside the bare rate of closest hits along the same kind of rays.
+//! Sixteen samples a bundle of every estimator on the Cornell box at three sizes, and the tables that walks need; then walks alone, counted
+//! in steps, in a furnace where all of them are long; and light paths in rays a second, beside the bare rate of closest hits.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use etendue::assembly::{Exchange, assemble};
 use etendue::basis::{Bundles, Resolution};
-use etendue::estimator::{Bidirectional, Estimator, LightTracer, MatrixWalk, PathTracer, Sampling, estimate};
+use etendue::estimator::{
+    Bidirectional, Estimator, LightTracer, MatrixWalk, PathTracer, Sampling, Scoring, Sequential, estimate,
+};
 use etendue::gallery;
 use etendue::geometry::{Frame, Polygon, Ray, Tracer};
 use etendue::sampling::{Stream, warp};
@@ -34,6 +36,48 @@ fn bench(criterion: &mut Criterion) {
                 b.iter(|| estimate(black_box(estimator), SAMPLES, 1));
             });
         }
+    }
+    group.finish();
+}
+
+/// Steps a second on one thread. The furnace's K is full; its larger tables do not fit any cache.
+fn steps(criterion: &mut Criterion) {
+    let scene = gallery::furnace_cube(&[0.9], &[1.0]).expect("a furnace");
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread");
+    let mut group = criterion.benchmark_group("steps");
+    group.sample_size(10);
+    for patch_size in [0.2, 0.04] {
+        let bundles = Bundles::new(&scene, Resolution { patch_size, n_directions: 1 }).expect("a resolution");
+        let rough = Exchange { tolerance: 1e-2, ..Exchange::default() };
+        let system = assemble(&scene, &bundles, rough).expect("a diffuse scene");
+        let n = bundles.n_bundles();
+        let walk = MatrixWalk::collision(&system).expect("a table");
+        let shooting = walk.shooting(Scoring::Collision).expect("emission");
+        let jacobi = walk.stochastic_jacobi(100_000).expect("particles");
+        let all: [(&dyn Estimator, u64); 3] = [(&walk, 1 + 200_000 / n as u64), (&shooting, 100_000), (&jacobi, 4)];
+        for (estimator, n_samples) in all {
+            group.throughput(Throughput::Elements(estimate(estimator, n_samples, 1).n_steps));
+            group.bench_function(BenchmarkId::new(estimator.name(), n), |b| {
+                b.iter(|| alone.install(|| estimate(black_box(estimator), n_samples, 1)));
+            });
+        }
+    }
+    group.finish();
+}
+
+/// From nothing to 1e-12 by sequential Monte Carlo.
+fn sequential(criterion: &mut Criterion) {
+    let scene = gallery::cornell_box();
+    let mut group = criterion.benchmark_group("sequential");
+    group.sample_size(10);
+    let bundles = Bundles::new(&scene, Resolution { patch_size: 0.25, n_directions: 1 }).expect("a resolution");
+    let system = assemble(&scene, &bundles, Exchange::default()).expect("a diffuse scene");
+    let walk = MatrixWalk::collision(&system).expect("a table");
+    for n_walks in [16, 64, 256] {
+        let settings = Sequential { tolerance: 1e-12, n_walks, max_stages: 100 };
+        group.bench_function(BenchmarkId::new("to-1e-12", n_walks), |b| {
+            b.iter(|| black_box(&walk).sequential(settings, 1))
+        });
     }
     group.finish();
 }
@@ -92,5 +136,5 @@ fn diffuse_rays(scene: &Scene, bundles: &Bundles, tracer: &Tracer, n: usize) -> 
     rays
 }
 
-criterion_group!(benches, bench, rays);
+criterion_group!(benches, bench, steps, sequential, rays);
 criterion_main!(benches);

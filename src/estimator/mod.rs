@@ -62,6 +62,7 @@ pub trait Estimator: Sync {
     /// What the samples have as their expectation.
     fn truth(&self) -> Truth;
 
+    /// How many bundles are scored, or measurements by an estimator of those: rows of its answer.
     fn n_bundles(&self) -> usize;
 
     /// Numbers scored a bundle: one a band, or one for every bounce and band, see [`Bounces`].

@@ -33,7 +33,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// Walks that one thread moves in turns: hides the time that memory takes to deliver a slot of a large matrix.
-pub(super) const N_ABREAST: usize = 16;
+pub(super) const N_ABREAST: usize = 64;
 
 /// Walks on K whose mean is (I − K)⁻¹E, in every band.
 #[derive(Clone, Debug)]

@@ -143,7 +143,7 @@ impl Estimator for ShootingWalk {
     }
 
     fn sample(&self, _: usize, stream: &mut Stream, score: &mut Score) {
-        let mut particle = self.birth(stream.clone());
+        let mut particle = self.birth(stream.clone(), Vec::new());
         while particle.is_alive {
             let next = self.chain.steps.sample(particle.bundle, particle.uniform);
             self.arrive(&mut particle, next);
@@ -153,8 +153,9 @@ impl Estimator for ShootingWalk {
     }
 
     fn samples(&self, _: usize, numbers: Range<u64>, streams: &Streams, score: &mut Score) {
-        let mut waiting = numbers.map(|number| self.birth(streams.stream(0, number)));
-        let mut particles: Vec<Particle> = waiting.by_ref().take(N_ABREAST).collect();
+        let mut waiting = numbers.map(|number| streams.stream(0, number));
+        let birth = |stream| self.birth(stream, Vec::new());
+        let mut particles: Vec<Particle> = waiting.by_ref().take(N_ABREAST).map(birth).collect();
         let mut draws = Vec::with_capacity(N_ABREAST);
         while !particles.is_empty() {
             // Move them all: first nothing but reads, so that memory delivers many slots at a time.
@@ -172,7 +173,7 @@ impl Estimator for ShootingWalk {
                 self.score(&particles[k], score);
                 score.end_sample();
                 match waiting.next() {
-                    Some(particle) => particles[k] = particle,
+                    Some(stream) => particles[k] = self.birth(stream, std::mem::take(&mut particles[k].visits)),
                     None => drop(particles.swap_remove(k)),
                 }
             }
@@ -181,14 +182,15 @@ impl Estimator for ShootingWalk {
 }
 
 impl ShootingWalk {
-    /// A particle where it is born, with the power it carries.
-    fn birth(&self, mut stream: Stream) -> Particle {
+    /// A particle where it is born, with the power it carries. Takes another's room for visits.
+    fn birth(&self, mut stream: Stream, mut visits: Vec<(usize, bool, Bands)>) -> Particle {
+        visits.clear();
         let bundle = self.births.draw(&mut stream);
         let mut power = Bands::all(0.0, self.chain.n_bands);
         power.iter_mut().zip(self.births.weights(bundle)).for_each(|(power, w)| *power = w);
         let uniform = stream.uniform();
         let is_alive = !self.columns.ends_before(1);
-        Particle { bundle, is_alive, n_steps: 0, uniform, power, stream, visits: Vec::new() }
+        Particle { bundle, is_alive, n_steps: 0, uniform, power, stream, visits }
     }
 
     /// Lets a particle arrive on its next bundle, maybe out of the scene, and be absorbed or go on.

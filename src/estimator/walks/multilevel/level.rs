@@ -1,19 +1,21 @@
-//! Walks of one level: of the coarsest alone, or the difference to the next coarser along the same path.
+//! Walks of one level: of the coarsest alone, or the difference to the next coarser by two walks that stay together.
 
 use super::super::chain::Chain;
 use super::parents::Parents;
 use crate::assembly::System;
 use crate::estimator::bands::Bands;
 use crate::estimator::{Estimator, Score, Truth};
-use crate::linalg::Matrix;
+use crate::linalg::{Block, LinearOperator, Matrix};
 use crate::sampling::Stream;
 use std::sync::Arc;
+
+/// Draws after which a coarse walk takes what it has; never reached but by rounding.
+const MAX_DRAWS: usize = 1 << 20;
 
 /// What one level adds to the coarser ones.
 #[derive(Debug)]
 pub struct Level<'a> {
     chain: Arc<Chain>,
-    exchange: &'a Matrix,
     coarser: Option<Coarser<'a>>,
 }
 
@@ -21,20 +23,36 @@ pub struct Level<'a> {
 struct Coarser<'a> {
     chain: Arc<Chain>,
     exchange: &'a Matrix,
-    parents: Parents,
+    /// The coarse bundle of every fine one.
+    parents: Vec<u32>,
+    /// n fine × (n coarse + 1), row by row: the probability of stepping from a fine bundle into each coarse one, and out of the scene.
+    gathered: Vec<f64>,
+    /// The probability of stepping out of the scene from every coarse bundle.
+    lost: Vec<f64>,
 }
 
-/// Both walks of a pair that shares its path, by what they carry.
-struct Pair {
-    bundle: usize,
-    fine: Bands,
-    coarse: Bands,
+/// A walk and what it carries; on no bundle once it has ended.
+struct Walker {
+    bundle: Option<usize>,
+    weights: Bands,
 }
 
 impl<'a> Level<'a> {
-    pub fn new(chain: Arc<Chain>, system: &'a System, coarser: Option<(Arc<Chain>, &'a System, Parents)>) -> Self {
-        let coarser = coarser.map(|(chain, system, parents)| Coarser { chain, exchange: system.exchange(), parents });
-        Self { chain, exchange: system.exchange(), coarser }
+    /// Cost O(n²), 8 bytes an entry between the two levels.
+    pub fn new(chain: Arc<Chain>, coarser: Option<(Arc<Chain>, &'a System, Parents)>) -> Self {
+        let coarser = coarser.map(|(coarse, system, parents)| {
+            let width = coarse.n_bundles() + 1;
+            let mut gathered = vec![0.0; chain.n_bundles() * width];
+            for (i, row) in gathered.chunks_exact_mut(width).enumerate() {
+                chain.propagation.for_each_in_row(i, |j, geometry| row[parents.of[j] as usize] += geometry);
+                row[width - 1] = (1.0 - row.iter().sum::<f64>()).max(0.0);
+            }
+            let mut kept = Block::zeros(coarse.n_bundles(), 1);
+            coarse.propagation.apply(&Block::from_fn(coarse.n_bundles(), 1, |_, _| 1.0), &mut kept);
+            let lost = kept.values().iter().map(|kept| (1.0 - kept).max(0.0)).collect();
+            Coarser { chain: coarse, exchange: system.exchange(), parents: parents.of, gathered, lost }
+        });
+        Self { chain, coarser }
     }
 
     pub fn n_bundles(&self) -> usize {
@@ -48,44 +66,63 @@ impl<'a> Level<'a> {
 
     /// The next coarser bundle of every bundle; none on the coarsest level.
     pub fn parents(&self) -> Option<&[u32]> {
-        self.coarser.as_ref().map(|coarser| coarser.parents.of.as_slice())
-    }
-
-    /// Steps by the middle of both laws, and weighs both walks by their own; false where the path leaves the scene.
-    fn step(&self, pair: &mut Pair, stream: &mut Stream) -> bool {
-        let Some(coarser) = &self.coarser else {
-            let next = self.chain.steps.sample(pair.bundle, stream.uniform());
-            next.inspect(|next| pair.bundle = *next);
-            return next.is_some();
-        };
-        let (from, parents) = (pair.bundle, &coarser.parents);
-        let parent = parents.of[from] as usize;
-        let next = if stream.uniform() < 0.5 {
-            self.chain.steps.sample(from, stream.uniform())
-        } else {
-            let next = coarser.chain.steps.sample(parent, stream.uniform());
-            next.map(|next| parents.draw(next, stream.uniform()))
-        };
-        let Some(to) = next else { return false };
-        let geometry = entry(self.exchange, from, to) / self.chain.etendue[from];
-        let spread = entry(coarser.exchange, parent, parents.of[to] as usize) / coarser.chain.etendue[parent]
-            * parents.share[to];
-        let drawn = 0.5 * (geometry + spread);
-        pair.fine.iter_mut().for_each(|weight| *weight *= geometry / drawn);
-        pair.coarse.iter_mut().for_each(|weight| *weight *= spread / drawn);
-        pair.bundle = to;
-        true
+        self.coarser.as_ref().map(|coarser| coarser.parents.as_slice())
     }
 }
 
-/// One entry of a stored matrix.
-fn entry(matrix: &Matrix, row: usize, column: usize) -> f64 {
-    match matrix {
-        Matrix::Dense(dense) => dense.row_slice(row)[column],
-        Matrix::Sparse(sparse) => {
-            let (columns, values) = sparse.row_entries(row);
-            columns.binary_search(&(column as u32)).map_or(0.0, |k| values[k])
+impl Coarser<'_> {
+    /// The coarse walk's step from `from`, where the fine one has gone from `fine_from` to `fine_to`: there too as often as both laws allow.
+    fn follow(&self, from: usize, fine_from: usize, fine_to: Option<usize>, stream: &mut Stream) -> Option<usize> {
+        let target = fine_to.map(|to| self.parents[to] as usize);
+        if stream.uniform() * self.gathered(fine_from, target) < self.probability(from, target) {
+            return target;
         }
+        // What both laws have in common is used up: draw from what is left of the coarse one.
+        let mut next = None;
+        for _ in 0..MAX_DRAWS {
+            next = self.chain.steps.sample(from, stream.uniform());
+            if stream.uniform() * self.probability(from, next) >= self.gathered(fine_from, next) {
+                break;
+            }
+        }
+        next
+    }
+
+    /// Of stepping from a fine bundle into a coarse one, or out.
+    fn gathered(&self, from: usize, to: Option<usize>) -> f64 {
+        let width = self.lost.len() + 1;
+        self.gathered[from * width + to.unwrap_or(width - 1)]
+    }
+
+    /// Of stepping from a coarse bundle to another, or out.
+    fn probability(&self, from: usize, to: Option<usize>) -> f64 {
+        let Some(to) = to else { return self.lost[from] };
+        let exchange = match self.exchange {
+            Matrix::Dense(dense) => dense.row_slice(from)[to],
+            Matrix::Sparse(sparse) => {
+                let (columns, values) = sparse.row_entries(from);
+                columns.binary_search(&(to as u32)).map_or(0.0, |k| values[k])
+            }
+        };
+        exchange / self.chain.etendue[from]
+    }
+}
+
+impl Walker {
+    fn new(bundle: Option<usize>, n_bands: usize) -> Self {
+        Self { bundle, weights: Bands::all(1.0, n_bands) }
+    }
+
+    /// Scores where it stands, with this sign, and survives or ends.
+    fn visit(&mut self, chain: &Chain, uniform: f64, sign: f64, totals: &mut [f64]) {
+        let Some(bundle) = self.bundle else { return };
+        for ((total, weight), e) in totals.iter_mut().zip(self.weights.iter()).zip(chain.emission.row(bundle)) {
+            *total += sign * weight * e;
+        }
+        if uniform >= chain.survival[bundle] {
+            self.bundle = None;
+        }
+        self.weights.iter_mut().zip(chain.gain(bundle)).for_each(|(weight, gain)| *weight *= gain);
     }
 }
 
@@ -108,28 +145,26 @@ impl Estimator for Level<'_> {
 
     fn sample(&self, start: usize, stream: &mut Stream, score: &mut Score) {
         let n_bands = self.chain.n_bands;
-        let subtracted = if self.coarser.is_some() { 1.0 } else { 0.0 };
-        let mut pair = Pair { bundle: start, fine: Bands::all(1.0, n_bands), coarse: Bands::all(subtracted, n_bands) };
+        let parent = self.coarser.as_ref().map(|coarser| coarser.parents[start] as usize);
+        let (mut fine, mut coarse) = (Walker::new(Some(start), n_bands), Walker::new(parent, n_bands));
         let mut n_steps = 0;
-        loop {
-            // Score the visit of both; nested bundles lie on the same surface and emit alike.
-            let emission = self.chain.emission.row(pair.bundle);
-            let weights = pair.fine.iter().zip(pair.coarse.iter());
-            for ((total, e), (fine, coarse)) in score.totals(start).iter_mut().zip(emission).zip(weights) {
-                *total += (fine - coarse) * e;
+        while fine.bundle.is_some() || coarse.bundle.is_some() {
+            // Score both, and absorb both by one number.
+            let uniform = stream.uniform();
+            fine.visit(&self.chain, uniform, 1.0, score.totals(start));
+            if let Some(coarser) = &self.coarser {
+                coarse.visit(&coarser.chain, uniform, -1.0, score.totals(start));
             }
 
-            // Survive alike, and step.
-            if stream.uniform() >= self.chain.survival[pair.bundle] {
-                break;
-            }
-            for (band, gain) in self.chain.gain(pair.bundle).enumerate() {
-                pair.fine[band] *= gain;
-                pair.coarse[band] *= gain;
-            }
-            n_steps += 1;
-            if !self.step(&mut pair, stream) {
-                break;
+            // Step the fine one by its own law, and the coarse one after it, or by its own where it is alone.
+            let from = fine.bundle;
+            fine.bundle = from.and_then(|from| self.chain.steps.sample(from, stream.uniform()));
+            n_steps += u64::from(from.is_some()) + u64::from(coarse.bundle.is_some());
+            if let (Some(coarser), Some(bundle)) = (&self.coarser, coarse.bundle) {
+                coarse.bundle = match from {
+                    Some(from) => coarser.follow(bundle, from, fine.bundle, stream),
+                    None => coarser.chain.steps.sample(bundle, stream.uniform()),
+                };
             }
         }
         score.count_steps(n_steps);

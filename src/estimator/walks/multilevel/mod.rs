@@ -4,20 +4,23 @@
 //! L_fine = P … P L₀ + … + P (L₂ − P L₁) + (L_fine − P L_coarse),      (P L)ᵢ = L of the bundle that i is a part of
 //! ```
 //!
-//! A walk of level ℓ begins on every bundle of that level and scores both its own L and that of the next coarser level, along *the same
-//! path*, so that their difference varies little; coarse bundles are few, so that the level that varies most costs least. The paths'
-//! steps are drawn from the middle of both laws and weighed by each:
+//! A sample of level ℓ is a fine walk less a coarse one, both from where a bundle of that level is; they stay together as long as their laws
+//! allow, so that their difference varies little, and coarse bundles are few, so that the level that varies most costs least. Where the
+//! fine walk steps from i into the coarse bundle J, the coarse one on I follows it there with the largest probability that keeps its own law,
 //!
 //! ```text
-//! j ~ Q = ½ G + ½ G̃,      G̃ᵢⱼ = G_IJ μⱼ/μ_J      (I, J hold i, j),      w ← w (a/p) G/Q,      w̃ ← w̃ (a/p) G̃/Q
+//! min(1, G_IJ / Σ over j in J of Gᵢⱼ),
 //! ```
 //!
-//! G̃ is the coarse propagation spread over fine bundles: its walks are the coarse ones, step for step. Both likelihood ratios are at most 2,
-//! and near 1 where the two levels see alike. The sum has the fine solution as its expectation, without bias.
+//! and otherwise draws from what is left of its law, (G_IJ − Σ Gᵢⱼ)⁺, by rejection; walks that have parted may meet again. No weight comes of
+//! it, so that all moments exist as they do for [`MatrixWalk`](super::MatrixWalk). (Weighing one path by both laws has been tried: likelihood ratios of
+//! neighbouring patches multiply up to a variance twenty times that of the coarsest level.) The sum has the fine solution as its
+//! expectation, without bias.
 //!
 //! Samples a level follow N ∝ √(V/C), V the variance of a difference and C the cost of one sample of all bundles of the level, both
-//! from a pilot that is then thrown away. Meshes must be nested. Memory: the tables of [`MatrixWalk`](super::MatrixWalk) for every level.
-//! Source: Heinrich 1998; Giles 2008.
+//! from a pilot that is then thrown away. Meshes must be nested. Memory: the tables
+//! of `MatrixWalk` for every level, and 8 bytes a pair of a fine and a coarse bundle.
+//! Source: Heinrich 1998; Giles 2008; Lindvall 2002, §I.5 (maximal coupling).
 
 mod estimate;
 mod level;
@@ -60,7 +63,7 @@ impl<'a> Multilevel<'a> {
         }
         let level = |(k, parents): (usize, Option<Parents>)| {
             let coarser = parents.map(|parents| (chains[k - 1].clone(), levels[k - 1].1, parents));
-            Level::new(chains[k].clone(), levels[k].1, coarser)
+            Level::new(chains[k].clone(), coarser)
         };
         let levels = nested.into_iter().enumerate().map(level).collect();
         Ok(Self { levels })

@@ -1,7 +1,6 @@
 //! Which coarse bundle every fine one is a part of.
 
 use crate::basis::Bundles;
-use crate::sampling::AliasTable;
 use thiserror::Error;
 
 /// Parts must add up to the whole to this, relatively: étendues are sums of products of some coordinates.
@@ -15,10 +14,6 @@ const INWARD: f64 = 1e-6;
 pub struct Parents {
     /// The coarse bundle of every fine one.
     pub of: Vec<u32>,
-    /// The fine bundles of every coarse one, with a table to draw one by étendue.
-    children: Vec<(Vec<u32>, AliasTable)>,
-    /// μ of every fine bundle over that of its coarse one.
-    pub share: Vec<f64>,
 }
 
 /// Why one mesh is no refinement of another.
@@ -53,24 +48,15 @@ impl Parents {
             of.push(parent as u32);
         }
 
-        // Gather the parts, which must make up the whole.
-        let mut parts = vec![Vec::new(); coarse.n_bundles()];
-        of.iter().enumerate().for_each(|(i, parent)| parts[*parent as usize].push(i as u32));
-        let mut children = Vec::with_capacity(parts.len());
-        for (bundle, parts) in parts.into_iter().enumerate() {
-            let etendue: Vec<f64> = parts.iter().map(|i| fine.etendue()[*i as usize]).collect();
-            let found = etendue.iter().sum::<f64>() / coarse.etendue()[bundle];
-            let table = AliasTable::new(&etendue).ok().filter(|_| (found - 1.0).abs() <= WHOLE_TOLERANCE);
-            children.push((parts, table.ok_or(NestingError::NotWhole { bundle, found })?));
+        // The parts must make up the whole.
+        let mut parts = vec![0.0; coarse.n_bundles()];
+        of.iter().zip(fine.etendue()).for_each(|(parent, mu)| parts[*parent as usize] += mu);
+        for (bundle, (part, whole)) in parts.iter().zip(coarse.etendue()).enumerate() {
+            let found = part / whole;
+            if (found - 1.0).abs() > WHOLE_TOLERANCE {
+                return Err(NestingError::NotWhole { bundle, found });
+            }
         }
-        let share = of.iter().zip(fine.etendue()).map(|(parent, mu)| mu / coarse.etendue()[*parent as usize]).collect();
-        Ok(Self { of, children, share })
-    }
-
-    /// A part of a coarse bundle, by étendue.
-    #[inline]
-    pub fn draw(&self, coarse: usize, uniform: f64) -> usize {
-        let (parts, table) = &self.children[coarse];
-        parts[table.sample(uniform)] as usize
+        Ok(Self { of })
     }
 }
