@@ -1,11 +1,16 @@
 //! Sixteen samples a bundle of every estimator on the Cornell box at three sizes, and the tables that walks need; then walks alone, counted
-//! in steps, in a furnace where all of them are long.
+//! in steps, in a furnace where all of them are long; and light paths in rays a second, beside the bare rate of closest hits.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use etendue::assembly::{Exchange, assemble};
 use etendue::basis::{Bundles, Resolution};
-use etendue::estimator::{Estimator, MatrixWalk, PathTracer, Scoring, Sequential, estimate};
+use etendue::estimator::{
+    Bidirectional, Estimator, LightTracer, MatrixWalk, PathTracer, Sampling, Scoring, Sequential, estimate,
+};
 use etendue::gallery;
+use etendue::geometry::{Frame, Polygon, Ray, Tracer};
+use etendue::sampling::{Stream, warp};
+use etendue::scene::Scene;
 use std::hint::black_box;
 
 const SAMPLES: u64 = 16;
@@ -77,5 +82,59 @@ fn sequential(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, bench, steps, sequential);
+/// Rays a second: of paths, all that they cast, closest hits and shadow rays; and of closest hits alone, along rays that leave the scene's
+/// surfaces as the paths' do.
+fn rays(criterion: &mut Criterion) {
+    let scene = gallery::cornell_box();
+    let bundles = Bundles::new(&scene, Resolution { patch_size: 0.125, n_directions: 1 }).expect("a resolution");
+    let mut group = criterion.benchmark_group("rays");
+    group.sample_size(10);
+
+    let polygons: Vec<&Polygon> = (0..scene.facets().len()).map(|facet| scene.polygon(facet)).collect();
+    let tracer = Tracer::new(&polygons);
+    let bare = diffuse_rays(&scene, &bundles, &tracer, 1 << 16);
+    group.throughput(Throughput::Elements(bare.len() as u64));
+    group.bench_function("closest hits", |b| {
+        b.iter(|| bare.iter().filter_map(|(ray, facet)| tracer.closest(black_box(ray), Some(*facet))).count());
+    });
+
+    let paths = || PathTracer::new(&scene, &bundles).expect("emitters");
+    let met = paths().with_sampling(Sampling::Directions);
+    let both = paths();
+    let light = LightTracer::new(&scene, &bundles).expect("emitters");
+    let pairs = Bidirectional::new(&scene, &bundles).expect("emitters");
+    let all: [(&dyn Estimator, u64); 4] = [(&both, SAMPLES), (&met, SAMPLES), (&light, 1 << 16), (&pairs, SAMPLES)];
+    for (estimator, n_samples) in all {
+        group.throughput(Throughput::Elements(estimate(estimator, n_samples, 1).n_steps));
+        group.bench_function(estimator.name(), |b| b.iter(|| estimate(black_box(estimator), n_samples, 1)));
+    }
+    group.finish();
+}
+
+/// Rays from points of the bundles in directions of density cosθ/π, and on from where they end while they survive.
+fn diffuse_rays(scene: &Scene, bundles: &Bundles, tracer: &Tracer, n: usize) -> Vec<(Ray, usize)> {
+    const SURVIVAL: f64 = 0.7;
+    let mut rays = Vec::with_capacity(n);
+    for number in 0_u64.. {
+        let mut stream = Stream::new(1, 0, number);
+        let patch = bundles.patch((number * 7919 % bundles.n_bundles() as u64) as usize).expect("a patch");
+        let (mut facet, mut origin) = (patch.facet, patch.polygon.sample(stream.uniform2()));
+        loop {
+            let frame = Frame::about(scene.polygon(facet).normal());
+            let ray = Ray { origin, direction: frame.to_world(warp::cosine_hemisphere(stream.uniform2()).into()) };
+            rays.push((ray, facet));
+            if rays.len() == n {
+                return rays;
+            }
+            let Some(hit) = tracer.closest(&ray, Some(facet)).filter(|hit| hit.front) else { break };
+            if stream.uniform() >= SURVIVAL {
+                break;
+            }
+            (facet, origin) = (hit.polygon, ray.at(hit.t));
+        }
+    }
+    rays
+}
+
+criterion_group!(benches, bench, steps, sequential, rays);
 criterion_main!(benches);

@@ -33,7 +33,7 @@ const DOORS: [(&str, &[&str]); 21] = [
     ("nalgebra", &["linalg"]),
     ("glam", &["geometry"]),
     ("obvhs", &["geometry"]),
-    ("pulp", &["assembly", "geometry", "linalg"]),
+    ("pulp", &["assembly", "estimator", "geometry", "linalg"]),
     ("robust", &["geometry"]),
     ("plotters", &["report"]),
     ("dejavu", &["report"]),

@@ -101,13 +101,10 @@ impl Polygon {
     /// A point uniform by area from two numbers uniform in [0, 1); its density is 1/area. Parallelograms keep the grid of the
     /// unit square; other polygons are fans of triangles chosen by area.
     pub fn sample(&self, mut u: [f64; 2]) -> Vec3 {
-        let v = &self.vertices;
-        let largest = |v: Vec3| v.abs().max_element();
-        if let [a, b, c, d] = v[..]
-            && largest(a - b + c - d) <= 1e-14 * largest(c - a) + 8.0 * f64::EPSILON * (largest(a) + largest(c))
-        {
-            return a + u[0] * (b - a) + u[1] * (d - a);
+        if let Some([corner, along, up]) = self.parallelogram() {
+            return corner + u[0] * along + u[1] * up;
         }
+        let v = &self.vertices;
         // Choose a triangle of the fan, and use what is left of the number.
         let mut left = u[0] * self.area;
         let mut triangle = [v[0], v[1], v[2]];
@@ -123,6 +120,14 @@ impl Polygon {
         let [a, b, c] = triangle;
         let s = u[0].sqrt();
         a + (1.0 - u[1]) * s * (b - a) + u[1] * s * (c - a)
+    }
+
+    /// A corner and the two sides that leave it, of a parallelogram; `None` of what is none to rounding.
+    pub fn parallelogram(&self) -> Option<[Vec3; 3]> {
+        let [a, b, c, d] = self.vertices[..] else { return None };
+        let largest = |v: Vec3| v.abs().max_element();
+        let allowed = 1e-14 * largest(c - a) + 8.0 * f64::EPSILON * (largest(a) + largest(c));
+        (largest(a - b + c - d) <= allowed).then_some([a, b - a, d - a])
     }
 
     /// The same polygon seen from behind.

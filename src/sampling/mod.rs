@@ -8,6 +8,7 @@ mod cumulative;
 mod directions;
 mod kronecker;
 mod padded;
+mod philox;
 mod sobol;
 mod stream;
 pub mod warp;

@@ -1,5 +1,6 @@
 //! Random streams that are keyed, not advanced: any draw can be had again without the draws before it.
 
+use super::philox;
 use rand_philox::{philox4x32_10, splitmix64};
 
 /// 2⁶⁴ over the golden ratio, made odd: keeps a zero seed away from the fixed point of `splitmix64`.
@@ -30,6 +31,20 @@ impl Streams {
     #[inline]
     pub fn stream(&self, start: u32, sample: u64) -> Stream {
         Stream { key: self.key, start, sample, n_blocks: 0, spare: None }
+    }
+
+    /// [`Stream::uniform3`] of many streams of one start at once: what each would draw from its block of this number.
+    ///
+    /// # Panics
+    /// If there is not room for each.
+    #[inline(always)]
+    pub fn uniform3_many(&self, start: u32, samples: &[u64], block: u32, [a, b, c]: [&mut [f64]; 3]) {
+        let n = samples.len();
+        let (a, b, c) = (&mut a[..n], &mut b[..n], &mut c[..n]);
+        for (k, sample) in samples.iter().enumerate() {
+            let counter = [block, *sample as u32, (*sample >> 32) as u32, start];
+            [a[k], b[k], c[k]] = three(halves(philox::block(counter, self.key)));
+        }
     }
 }
 
@@ -84,11 +99,19 @@ impl Stream {
     /// block that [`Stream::uniform`] may have left over is dropped.
     #[inline]
     pub fn uniform3(&mut self) -> [f64; 3] {
-        const SCALE: f64 = 1.0 / (1u64 << 42) as f64;
         self.spare = None;
-        let [first, second] = self.block();
-        let third = (first & 0x3f_ffff) << 20 | second & 0xf_ffff;
-        [(first >> 22) as f64 * SCALE, (second >> 22) as f64 * SCALE, third as f64 * SCALE]
+        three(self.block())
+    }
+
+    /// Where the stream stands: what it is one of, its start and sample, and how many blocks it has drawn.
+    pub fn address(&self) -> (Streams, u32, u64, u32) {
+        (Streams { key: self.key }, self.start, self.sample, self.n_blocks)
+    }
+
+    /// Leaves out so many blocks, and half a block that may have been left over.
+    pub fn skip(&mut self, n_blocks: u32) {
+        self.n_blocks = self.n_blocks.wrapping_add(n_blocks);
+        self.spare = None;
     }
 
     /// The next 128 bits.
@@ -96,9 +119,24 @@ impl Stream {
     fn block(&mut self) -> [u64; 2] {
         let counter = [self.n_blocks, self.sample as u32, (self.sample >> 32) as u32, self.start];
         self.n_blocks = self.n_blocks.wrapping_add(1);
-        let [a, b, c, d] = philox4x32_10(counter, self.key).map(u64::from);
-        [a | b << 32, c | d << 32]
+        halves(philox4x32_10(counter, self.key))
     }
+}
+
+#[inline(always)]
+fn halves(words: [u32; 4]) -> [u64; 2] {
+    let [a, b, c, d] = words.map(u64::from);
+    [a | b << 32, c | d << 32]
+}
+
+/// 128 bits as three numbers of 42.
+#[inline(always)]
+fn three([first, second]: [u64; 2]) -> [f64; 3] {
+    // Bits below 2⁵² in the fraction of a number of 2⁵²: converted without an instruction that only some machines have.
+    const EXPONENT: u64 = 0x433 << 52;
+    const SCALE: f64 = 1.0 / (1u64 << 42) as f64;
+    let third = (first & 0x3f_ffff) << 20 | second & 0xf_ffff;
+    [first >> 22, second >> 22, third].map(|bits| (f64::from_bits(bits | EXPONENT) - (1u64 << 52) as f64) * SCALE)
 }
 
 /// The upper 53 bits as a number in [0, 1).

@@ -19,12 +19,25 @@ pub(super) struct Emitters<'a> {
 pub(super) struct Emitter<'a> {
     pub facet: usize,
     pub polygon: &'a Polygon,
+    /// A corner and two sides, of one that is a parallelogram.
+    parallelogram: Option<[Vec3; 3]>,
     /// Of the front.
     pub normal: Vec3,
     /// W m⁻² sr⁻¹, one value a band.
     pub emission: &'a [f64],
     /// Density of [`Emitters::point`] by area, m⁻².
     pub density: f64,
+}
+
+impl Emitter<'_> {
+    /// A point of it, uniform by area.
+    #[inline]
+    pub fn point(&self, [u, v]: [f64; 2]) -> Vec3 {
+        match self.parallelogram {
+            Some([corner, along, up]) => corner + u * along + v * up,
+            None => self.polygon.sample([u, v]),
+        }
+    }
 }
 
 impl<'a> Emitters<'a> {
@@ -39,6 +52,7 @@ impl<'a> Emitters<'a> {
         let emitter = |facet: usize| Emitter {
             facet,
             polygon: scene.polygon(facet),
+            parallelogram: scene.polygon(facet).parallelogram(),
             normal: scene.polygon(facet).normal(),
             emission: &scene.surface_of(facet).emission,
             density: density[facet],
@@ -50,8 +64,21 @@ impl<'a> Emitters<'a> {
     #[inline]
     pub fn point(&self, stream: &mut Stream) -> (&Emitter<'a>, Vec3) {
         let [choice, u, v] = stream.uniform3();
-        let emitter = &self.emitters[self.choice.sample(choice)];
-        (emitter, emitter.polygon.sample([u, v]))
+        let (_, emitter) = self.choose(choice);
+        (emitter, emitter.point([u, v]))
+    }
+
+    /// An emitter in proportion to its power, and its number.
+    #[inline]
+    pub fn choose(&self, uniform: f64) -> (usize, &Emitter<'a>) {
+        let number = self.choice.sample(uniform);
+        (number, &self.emitters[number])
+    }
+
+    /// The emitter of a number.
+    #[inline]
+    pub fn get(&self, number: usize) -> &Emitter<'a> {
+        &self.emitters[number]
     }
 
     /// Density of [`Emitters::point`] by area, m⁻², at any point of a facet's front.

@@ -4,6 +4,7 @@ mod bidirectional;
 mod density;
 mod emitters;
 mod heuristic;
+mod lanes;
 mod light_tracer;
 mod path_tracer;
 mod photon;

@@ -21,6 +21,7 @@
 
 use super::super::bounces::Columns;
 use super::super::{Bounces, Estimator, EstimatorError, Score, Truth};
+use super::lanes;
 use super::stage::Stage;
 use super::wave::Wave;
 use super::{Heuristic, Roulette};
@@ -28,9 +29,6 @@ use crate::basis::Bundles;
 use crate::sampling::{Stream, Streams};
 use crate::scene::Scene;
 use std::ops::Range;
-
-/// Paths that one thread moves together: enough to hide what each waits for, few enough to stay in the nearest caches.
-const N_ABREAST: u64 = 128;
 
 /// How paths find emitters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -41,6 +39,17 @@ pub enum Sampling {
     Emitters,
     /// By both, weighed.
     Both(Heuristic),
+}
+
+impl Sampling {
+    /// The weight of what one of the two ways has found, with the densities of this one and of the other.
+    #[inline]
+    pub(super) fn weight(self, mine: f64, other: f64) -> f64 {
+        match self {
+            Self::Both(heuristic) => heuristic.weight(mine, other),
+            Self::Directions | Self::Emitters => 1.0,
+        }
+    }
 }
 
 /// Paths whose mean is the continuous radiance of every bundle.
@@ -105,21 +114,25 @@ impl Estimator for PathTracer<'_> {
     }
 
     fn sample(&self, start: usize, stream: &mut Stream, score: &mut Score) {
-        let mut wave = Wave::new(self, self.columns);
-        for found in wave.run(start, std::iter::once(stream.clone())) {
+        let (streams, key, number, block) = stream.address();
+        let mut wave = Wave::new(self, self.columns, streams, key);
+        for found in wave.run(start, std::iter::once(number), block) {
             score.totals(start).iter_mut().zip(found).for_each(|(total, found)| *total += found);
         }
+        stream.skip(wave.block.wrapping_sub(block));
         score.count_steps(wave.n_rays);
     }
 
     fn samples(&self, start: usize, numbers: Range<u64>, streams: &Streams, score: &mut Score) {
-        let mut wave = Wave::new(self, self.columns);
-        for first in numbers.clone().step_by(N_ABREAST as usize) {
-            let abreast = first..numbers.end.min(first.saturating_add(N_ABREAST));
-            for found in wave.run(start, abreast.map(|number| streams.stream(start as u32, number))) {
+        let mut wave = Wave::new(self, self.columns, *streams, start as u32);
+        let mut next = numbers.start;
+        while next < numbers.end {
+            let end = numbers.end.min(next.saturating_add(lanes::N as u64));
+            for found in wave.run(start, next..end, 0) {
                 score.totals(start).copy_from_slice(found);
                 score.end_sample();
             }
+            next = end;
         }
         score.count_steps(wave.n_rays);
     }

@@ -1,214 +1,312 @@
 //! Paths from one bundle that go step by step together.
 //!
 //! A path by itself is one long chain: each ray waits for the direction, which waits for the last hit. Many abreast keep the machine busy while
-//! each of them waits. What a path draws and adds up is the same whoever is beside it.
+//! each of them waits, and what diffuse surfaces ask for is worked out for several at a time. What a path draws and adds up is the same whoever
+//! is beside it.
+//!
+//! A path draws whole blocks of its stream: the point that it starts from, the direction in which its light is wanted, and for each bounce a
+//! point on the emitters and a direction with the number that decides whether it survives.
 
 use super::super::bounces::Columns;
+use super::lanes::{self, Draw, Lanes, N, Points, Turns, Vectors, Weigh};
 use super::path_tracer::{PathTracer, Sampling};
-use super::stage::{Arrival, Vertex};
-use crate::geometry::Vec3;
-use crate::sampling::Stream;
+use super::reflection::Reflection;
+use super::stage::Vertex;
+use crate::geometry::{Ray, Vec3};
+use crate::sampling::{Streams, warp};
 use crate::scene::Side;
 
-/// Some paths of one start under way.
+/// Some paths of one start under way. Lane k holds the k-th of those that have not ended.
 pub(super) struct Wave<'t, 'a> {
     tracer: &'t PathTracer<'a>,
     columns: Columns,
-    /// Those that have not ended.
-    paths: Vec<Path<'t>>,
-    /// What path k still carries, k · n_bands ...
-    throughput: Vec<f64>,
-    /// What path k has found, k · n_columns ...
+    /// Streams of the paths, and which of their blocks is next.
+    streams: Streams,
+    start: u32,
+    pub block: u32,
+    n_alive: usize,
+    /// Which of the paths, and which sample.
+    number: [u32; N],
+    sample: [u64; N],
+    /// Where it is: facet and side, position, the side's normal, and the direction of the ray that has come here.
+    place: [(u32, Side); N],
+    position: Vectors,
+    normal: Vectors,
+    arriving: Vectors,
+    /// Where it goes next.
+    direction: Vectors,
+    /// By solid angle.
+    density: Lanes,
+    /// What it carries, band by band: on diffuse sides times the albedo, for that is what it carries on, whatever the direction.
+    carried: Vec<Lanes>,
+    is_diffuse: [bool; N],
+    uniform: [Lanes; 3],
+    /// Points on emitters, and what the geometry makes of their light.
+    emitter: [u32; N],
+    points: Points,
+    gain: Lanes,
+    /// What every path has found, path by path, one number a column.
     totals: Vec<f64>,
-    /// Emitters that may be seen, and what they would add, n_bands each.
-    sights: Vec<Sight>,
-    light: Vec<f64>,
     /// Closest hits and shadow rays so far.
     pub n_rays: u64,
 }
 
-/// A path that has not ended.
-struct Path<'t> {
-    number: usize,
-    stream: Stream,
-    vertex: Vertex<'t>,
-    /// Where it goes next, and with which density by solid angle.
-    direction: Vec3,
-    density: f64,
-}
-
-/// A point on an emitter that a path may see.
-struct Sight {
-    number: usize,
-    from: Vec3,
-    to: Vec3,
-    ends: [usize; 2],
-}
-
 impl<'t, 'a> Wave<'t, 'a> {
-    pub fn new(tracer: &'t PathTracer<'a>, columns: Columns) -> Self {
-        let (paths, sights) = (Vec::new(), Vec::new());
+    /// Room for [`N`] paths abreast.
+    pub fn new(tracer: &'t PathTracer<'a>, columns: Columns, streams: Streams, start: u32) -> Self {
+        const ZERO: Lanes = [0.0; N];
         Self {
             tracer,
             columns,
-            paths,
-            throughput: Vec::new(),
+            streams,
+            start,
+            block: 0,
+            n_alive: 0,
+            number: [0; N],
+            sample: [0; N],
+            place: [(0, Side::Front); N],
+            position: [ZERO; 3],
+            normal: [ZERO; 3],
+            arriving: [ZERO; 3],
+            direction: [ZERO; 3],
+            density: ZERO,
+            carried: vec![ZERO; columns.n_bands],
+            is_diffuse: [true; N],
+            uniform: [ZERO; 3],
+            emitter: [0; N],
+            points: Points { position: [ZERO; 3], normal: [ZERO; 3], density: ZERO },
+            gain: ZERO,
             totals: Vec::new(),
-            sights,
-            light: Vec::new(),
             n_rays: 0,
         }
     }
 
-    /// Sends out a path with each of these streams, and follows them all to their ends. Returns what each has found, one number a column.
-    pub fn run(&mut self, start: usize, streams: impl Iterator<Item = Stream>) -> impl Iterator<Item = &[f64]> {
-        let n_columns = self.columns.count();
-        self.leave(start, streams);
+    /// Sends out a path for each of these samples, at most [`N`], from this block of their streams on, and follows them all to their ends.
+    /// Returns what each has found, one number a column.
+    pub fn run(
+        &mut self,
+        bundle: usize,
+        samples: impl Iterator<Item = u64>,
+        block: u32,
+    ) -> impl Iterator<Item = &[f64]> {
+        self.block = block;
+        self.leave(bundle, samples);
+        let sampling = self.tracer.sampling;
         for bounce in 1.. {
-            let Some(here) = self.columns.of(bounce).filter(|_| !self.paths.is_empty()) else { break };
-            if self.tracer.sampling != Sampling::Directions {
+            let Some(here) = self.columns.of(bounce).filter(|_| self.n_alive > 0) else { break };
+            if sampling != Sampling::Directions {
                 self.draw_emitters();
                 self.see_emitters(here.start);
             }
-            if self.tracer.sampling == Sampling::Emitters && self.columns.ends_before(bounce + 1) {
+            if sampling == Sampling::Emitters && self.columns.ends_before(bounce + 1) {
                 break;
             }
-            self.turn(bounce);
-            self.go(here.start);
+            self.turn();
+            self.go(bounce, here.start);
         }
-        self.totals.chunks_exact(n_columns)
+        self.totals.chunks_exact(self.columns.count())
+    }
+
+    /// Draws the next block of every path.
+    fn draw(&mut self) {
+        let samples = &self.sample[..lanes::whole(self.n_alive)];
+        let (streams, start, block) = (&self.streams, self.start, self.block);
+        Draw { streams, start, samples, block, uniform: &mut self.uniform }.run();
+        self.block = self.block.wrapping_add(1);
     }
 
     /// Starts every path with what the bundle emits, anywhere in its étendue.
-    fn leave(&mut self, start: usize, streams: impl Iterator<Item = Stream>) {
-        let stage = &self.tracer.stage;
-        let patch = stage.patches[start];
-        let (n_columns, n_bands) = (self.columns.count(), self.columns.n_bands);
-        self.paths.clear();
-        self.totals.clear();
-        for (number, mut stream) in streams.enumerate() {
-            self.totals.resize((number + 1) * n_columns, 0.0);
-            let Some(vertex) = stage.leave(patch, &mut stream) else { continue };
-            self.paths.push(Path { number, stream, vertex, direction: Vec3::ZERO, density: 0.0 });
+    fn leave(&mut self, bundle: usize, samples: impl Iterator<Item = u64>) {
+        let (stage, columns) = (&self.tracer.stage, self.columns);
+        let patch = stage.patches[bundle];
+        self.n_alive = 0;
+        for (sample, (slot, number)) in samples.zip(self.sample.iter_mut().zip(&mut self.number)) {
+            (*slot, *number) = (sample, self.n_alive as u32);
+            self.n_alive += 1;
         }
-        let n_paths = self.totals.len() / n_columns;
-        self.throughput.clear();
-        self.throughput.resize(n_paths * n_bands, 1.0);
-        if let Some(emitted) = self.columns.of(0) {
+        self.totals.clear();
+        self.totals.resize(self.n_alive * columns.count(), 0.0);
+        if let Some(emitted) = columns.of(0) {
             let emission = stage.emission(patch.facet, patch.side);
-            for totals in self.totals.chunks_exact_mut(n_columns) {
+            for totals in self.totals.chunks_exact_mut(columns.count()) {
                 totals[emitted.clone()].iter_mut().zip(emission).for_each(|(total, emission)| *total = *emission);
             }
         }
+
+        // A point of the patch; and a direction of density cosθ/π, backwards, where the direction matters.
+        let n_alive = self.n_alive;
+        self.carried.iter_mut().for_each(|carried| carried.fill(1.0));
+        self.draw();
+        let [u, v, _] = self.uniform;
+        let face = stage.face(patch.facet, patch.side);
+        let is_diffuse = matches!(face.reflection, Some(Reflection::Diffuse(_)));
+        if is_diffuse {
+            self.block = self.block.wrapping_add(1);
+        } else {
+            self.draw();
+        }
+        let parallelogram = patch.polygon.parallelogram();
+        self.n_alive = 0;
+        for k in 0..n_alive {
+            let position = match parallelogram {
+                Some([corner, along, up]) => corner + u[k] * along + v[k] * up,
+                None => patch.polygon.sample([u[k], v[k]]),
+            };
+            let [s, t] = [self.uniform[0][k], self.uniform[1][k]];
+            let given = if is_diffuse { Vec3::Z } else { warp::cosine_hemisphere([s, t]).into() };
+            self.arrive(k, (patch.facet, patch.side), position, -face.frame.to_world(given), 1.0);
+        }
     }
 
-    /// Draws a point on the emitters for every path, and keeps those that face its vertex.
-    fn draw_emitters(&mut self) {
-        let (stage, n_bands) = (&self.tracer.stage, self.columns.n_bands);
-        self.sights.clear();
-        self.light.clear();
-        for path in &mut self.paths {
-            let vertex = &path.vertex;
-            let (emitter, point) = stage.emitters.point(&mut path.stream);
-            let offset = point - vertex.position;
-            let distance_squared = offset.length_squared();
-            let direction = offset / distance_squared.sqrt();
-            let incident = vertex.frame.to_local(direction);
-            let emitter_cosine = -direction.dot(emitter.normal);
-            let is_facing = incident.z > 0.0 && emitter_cosine > 0.0;
-            if !is_facing || stage.tracer.coplanar(emitter.facet, vertex.facet) {
-                continue;
+    /// Puts the path of lane k where its ray ends, in the first lane that is free; it ends on what is black. Lanes are freed in order, so the
+    /// free one is not after k.
+    #[inline]
+    fn arrive(&mut self, k: usize, (facet, side): (usize, Side), position: Vec3, arriving: Vec3, gain: f64) {
+        let face = self.tracer.stage.face(facet, side);
+        let Some(reflection) = &face.reflection else { return };
+        let to = self.n_alive;
+        self.n_alive += 1;
+        (self.number[to], self.sample[to]) = (self.number[k], self.sample[k]);
+        self.place[to] = (facet as u32, side);
+        lanes::set(&mut self.position, to, position);
+        lanes::set(&mut self.normal, to, face.frame.z);
+        lanes::set(&mut self.arriving, to, arriving);
+        self.is_diffuse[to] = matches!(reflection, Reflection::Diffuse(_));
+        match reflection {
+            Reflection::Diffuse(albedo) => {
+                let bands = self.carried.iter_mut().zip(*albedo);
+                bands.for_each(|(carried, albedo)| carried[to] = carried[k] * gain * albedo);
             }
-
-            // f E cosθ′ / p, times the weight against finding it by a ray.
-            let by_point = emitter.density * distance_squared / emitter_cosine;
-            let weight = match self.tracer.sampling {
-                Sampling::Both(heuristic) => {
-                    heuristic.weight(by_point, vertex.reflection.density(vertex.given, incident))
-                }
-                Sampling::Directions | Sampling::Emitters => 1.0,
-            };
-            let first = self.light.len();
-            let carried = &self.throughput[path.number * n_bands..][..n_bands];
-            self.light.extend(carried.iter().zip(emitter.emission).map(|(carried, emission)| carried * emission));
-            let light = &mut self.light[first..];
-            vertex.reflection.scale(vertex.given, incident, incident.z / by_point * weight, light);
-            if light.iter().any(|light| *light > 0.0) {
-                let ends = [vertex.facet, emitter.facet];
-                self.sights.push(Sight { number: path.number, from: vertex.position, to: point, ends });
-            } else {
-                self.light.truncate(first);
-            }
+            Reflection::Other(_) => self.carried.iter_mut().for_each(|carried| carried[to] = carried[k] * gain),
         }
+    }
+
+    /// Where lane k is.
+    fn vertex(&self, k: usize) -> Option<Vertex<'t>> {
+        let (facet, side) = self.place[k];
+        let face = self.tracer.stage.face(facet as usize, side);
+        let given = face.frame.to_local(-lanes::get(&self.arriving, k));
+        let (facet, position) = (facet as usize, lanes::get(&self.position, k));
+        Some(Vertex { facet, side, position, frame: &face.frame, reflection: face.reflection.as_ref()?, given })
+    }
+
+    /// Draws a point on the emitters for every path, and what of its light a diffuse surface would reflect.
+    fn draw_emitters(&mut self) {
+        self.draw();
+        let emitters = &self.tracer.stage.emitters;
+        for k in 0..self.n_alive {
+            let [choice, u, v] = [0, 1, 2].map(|d| self.uniform[d][k]);
+            let (number, emitter) = emitters.choose(choice);
+            self.emitter[k] = number as u32;
+            lanes::set(&mut self.points.position, k, emitter.point([u, v]));
+            lanes::set(&mut self.points.normal, k, emitter.normal);
+            self.points.density[k] = emitter.density;
+        }
+        let (sampling, n) = (self.tracer.sampling, self.n_alive);
+        let (position, normal) = (&self.position, &self.normal);
+        Weigh { sampling, n, position, normal, points: &self.points, gain: &mut self.gain }.run();
     }
 
     /// Adds what the emitters send that nothing hides.
     fn see_emitters(&mut self, column: usize) {
-        let (tracer, n_bands, n_columns) = (&self.tracer.stage.tracer, self.columns.n_bands, self.columns.count());
-        self.n_rays += self.sights.len() as u64;
-        for (sight, light) in self.sights.iter().zip(self.light.chunks_exact(n_bands)) {
-            if !tracer.occluded(sight.from, sight.to, sight.ends) {
-                let totals = &mut self.totals[sight.number * n_columns + column..];
-                totals.iter_mut().zip(light).for_each(|(total, light)| *total += light);
+        let stage = &self.tracer.stage;
+        let n_columns = self.columns.count();
+        for k in 0..self.n_alive {
+            let emitter = stage.emitters.get(self.emitter[k] as usize);
+            let facet = self.place[k].0 as usize;
+            let is_facing = self.gain[k] > 0.0;
+            if !is_facing || stage.tracer.coplanar(emitter.facet, facet) {
+                continue;
+            }
+            let totals = self.number[k] as usize * n_columns + column;
+            if !self.is_diffuse[k] {
+                self.see_glossily(k, totals);
+                continue;
+            }
+            let lit = self.carried.iter().zip(emitter.emission).any(|(carried, emission)| carried[k] * emission > 0.0);
+            if !lit {
+                continue;
+            }
+            self.n_rays += 1;
+            let (from, to) = (lanes::get(&self.position, k), lanes::get(&self.points.position, k));
+            if !stage.tracer.occluded(from, to, [facet, emitter.facet]) {
+                let found = self.totals[totals..].iter_mut().zip(self.carried.iter().zip(emitter.emission));
+                found.for_each(|(total, (carried, emission))| *total += carried[k] * emission * self.gain[k]);
             }
         }
     }
 
-    /// Draws where each path's light may come from, and lets the path survive or not.
-    fn turn(&mut self, bounce: usize) {
-        let (roulette, n_bands) = (self.tracer.roulette, self.columns.n_bands);
-        let throughput = &mut self.throughput;
-        self.paths.retain_mut(|path| {
-            let vertex = &path.vertex;
-            let carried = &mut throughput[path.number * n_bands..][..n_bands];
-            let [u, v, fate] = path.stream.uniform3();
-            let Some(turn) = vertex.reflection.turn(vertex.given, [u, v], carried) else { return false };
-            let survival = roulette.survival(bounce, carried.iter().copied().fold(0.0, f64::max));
-            if fate >= survival {
-                return false;
+    /// The same from a surface that is not diffuse: f E cosθ′ / p times the weight against finding it by a ray.
+    fn see_glossily(&mut self, k: usize, totals: usize) {
+        let (stage, emitter) = (&self.tracer.stage, self.tracer.stage.emitters.get(self.emitter[k] as usize));
+        let Some(vertex) = self.vertex(k) else { return };
+        let point = lanes::get(&self.points.position, k);
+        let offset = point - vertex.position;
+        let distance_squared = offset.length_squared();
+        let direction = offset / distance_squared.sqrt();
+        let incident = vertex.frame.to_local(direction);
+        let by_point = emitter.density * distance_squared / -direction.dot(emitter.normal);
+        let by_ray = vertex.reflection.density(vertex.given, incident);
+        let weight = self.tracer.sampling.weight(by_point, by_ray);
+        let mut light: Vec<f64> =
+            self.carried.iter().zip(emitter.emission).map(|(c, emission)| c[k] * emission).collect();
+        vertex.reflection.scale(vertex.given, incident, incident.z / by_point * weight, &mut light);
+        if light.iter().all(|light| *light <= 0.0) {
+            return;
+        }
+        self.n_rays += 1;
+        if !stage.tracer.occluded(vertex.position, point, [vertex.facet, emitter.facet]) {
+            self.totals[totals..].iter_mut().zip(&light).for_each(|(total, light)| *total += light);
+        }
+    }
+
+    /// Draws where each path's light may come from. What does not reflect is left to carry nothing.
+    fn turn(&mut self) {
+        self.draw();
+        let [u, v, _] = &self.uniform;
+        let (direction, density) = (&mut self.direction, &mut self.density);
+        Turns { n: self.n_alive, normal: &self.normal, uniform: [u, v], direction, density }.run();
+        for k in (0..self.n_alive).filter(|k| !self.is_diffuse[*k]) {
+            let Some(vertex) = self.vertex(k) else { continue };
+            let mut carried: Vec<f64> = self.carried.iter().map(|carried| carried[k]).collect();
+            match vertex.reflection.turn(vertex.given, [u[k], v[k]], &mut carried) {
+                Some(turn) => {
+                    lanes::set(&mut self.direction, k, vertex.frame.to_world(turn.direction));
+                    self.density[k] = turn.density;
+                }
+                None => carried.fill(0.0),
+            }
+            self.carried.iter_mut().zip(carried).for_each(|(all, carried)| all[k] = carried);
+        }
+    }
+
+    /// Lets each path survive or not, follows its ray, adds what is emitted where that ends, and goes on from there.
+    fn go(&mut self, bounce: usize, column: usize) {
+        let (tracer, n_columns) = (self.tracer, self.columns.count());
+        let stage = &tracer.stage;
+        let n_alive = std::mem::take(&mut self.n_alive);
+        for k in 0..n_alive {
+            let most = self.carried.iter().fold(0.0, |most: f64, carried| most.max(carried[k]));
+            let survival = tracer.roulette.survival(bounce, most);
+            if self.uniform[2][k] >= survival {
+                continue;
             }
             let gain = 1.0 / survival;
-            carried.iter_mut().for_each(|carried| *carried *= gain);
-            path.direction = vertex.frame.to_world(turn.direction);
-            path.density = turn.density;
-            true
-        });
-    }
-
-    /// Follows every path's ray, adds what is emitted where it ends, and goes on from there.
-    fn go(&mut self, column: usize) {
-        let (tracer, n_bands, n_columns) = (self.tracer, self.columns.n_bands, self.columns.count());
-        let (stage, totals, throughput) = (&tracer.stage, &mut self.totals, &self.throughput);
-        self.n_rays += self.paths.len() as u64;
-        self.paths.retain_mut(|path| {
-            let Some(arrival) = stage.follow(path.vertex.facet, path.vertex.position, path.direction) else {
-                return false;
-            };
-            let density = stage.emitters.density(arrival.facet);
-            if density > 0.0 && arrival.side == Side::Front && tracer.sampling != Sampling::Emitters {
-                let weight = weight_of_ray(tracer.sampling, path.density, density, &arrival);
-                let totals = &mut totals[path.number * n_columns + column..];
-                let carried = &throughput[path.number * n_bands..][..n_bands];
-                let emission = stage.emission(arrival.facet, arrival.side);
-                for ((total, carried), emission) in totals.iter_mut().zip(carried).zip(emission) {
-                    *total += carried * weight * emission;
-                }
+            self.n_rays += 1;
+            let (facet, direction) = (self.place[k].0 as usize, lanes::get(&self.direction, k));
+            let ray = Ray { origin: lanes::get(&self.position, k), direction };
+            let Some(hit) = stage.tracer.closest(&ray, Some(facet)) else { continue };
+            let density = stage.emitters.density(hit.polygon);
+            if density > 0.0 && hit.front && tracer.sampling != Sampling::Emitters {
+                let cosine = -direction.dot(stage.face(hit.polygon, Side::Front).frame.z);
+                let weight = gain * tracer.sampling.weight(self.density[k], density * hit.t * hit.t / cosine);
+                let totals = &mut self.totals[self.number[k] as usize * n_columns + column..];
+                let bands = self.carried.iter().zip(stage.emission(hit.polygon, Side::Front));
+                let found = totals.iter_mut().zip(bands);
+                found.for_each(|(total, (carried, emission))| *total += carried[k] * weight * emission);
             }
-            let Some(next) = stage.vertex(&arrival) else { return false };
-            path.vertex = next;
-            true
-        });
-    }
-}
-
-/// The weight of an emitter that a ray of this density has met, against drawing that point.
-#[inline]
-fn weight_of_ray(sampling: Sampling, by_ray: f64, density: f64, arrival: &Arrival) -> f64 {
-    match sampling {
-        Sampling::Both(heuristic) => {
-            let by_point = density * arrival.distance * arrival.distance / arrival.given.z;
-            heuristic.weight(by_ray, by_point)
+            let side = if hit.front { Side::Front } else { Side::Back };
+            self.arrive(k, (hit.polygon, side), ray.at(hit.t), direction, gain);
         }
-        Sampling::Directions | Sampling::Emitters => 1.0,
     }
 }
