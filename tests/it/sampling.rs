@@ -441,14 +441,13 @@ fn pairs_of_all_dimensions_are_nearly_nets() {
     let points: Vec<[f64; 32]> = (0..1 << m).map(|k| sobol.point(k)).collect();
     let mut worst = 0;
     for a in 0..32 {
-        assert_eq!(pair_quality(&points, (a, a), 0), 0);
         let strata: HashSet<u64> = points.iter().map(|p| (p[a] * 1024.0) as u64).collect();
         assert_eq!(strata.len(), 1024, "dimension {a}");
         for b in 0..a {
             worst = worst.max(pair_quality(&points, (a, b), m));
         }
     }
-    assert!(worst <= 7, "t = {worst} of {m}");
+    assert_eq!(worst, 6, "the worst quality of Joe and Kuo's pairs among 1024 points");
 }
 
 /// Padding keeps what walks rely on: every dimension is stratified over aligned blocks, pairs are (0, 2)-nets, different pairs are independent.

@@ -154,6 +154,7 @@ fn bounces_are_told_apart() {
             let quasi = walk.measuring(&wanted).unwrap().quasi(64);
             if bounces.last() > Some(0) {
                 assert_agrees("a corner box", &measured, &estimate(&quasi, 1_000, SEED));
+                assert_agrees("a corner box", &measured, &estimate(&quasi.sorted(), 1_000, SEED));
             }
             let shooting = walk.shooting(scoring).unwrap().with_bounces(bounces);
             let drawn = estimate(&shooting, 500_000, SEED);
@@ -475,7 +476,8 @@ fn sequential_walks_converge_exponentially() {
             let answer = walk.with_scoring(scoring).sequential(settings, SEED);
             let (name, n_stages) = (scene.name(), answer.history.len() - 1);
             assert_eq!(answer.stop, SequentialStop::Converged, "{scoring:?} in {name}: {:?}", answer.history);
-            assert_eq!(answer.history[n_stages].n_products, n_stages);
+            let a_stage = if scoring == Scoring::ExpectedValue { 2 } else { 1 };
+            assert_eq!(answer.history[n_stages].n_products, a_stage * n_stages);
             // ‖L̃ − L‖ ≤ ‖r‖ / (1 − ‖K‖), and no albedo exceeds 0.9.
             assert!(relative_max(&answer.radiance, &exact) < 2e-11, "{scoring:?} in {name}");
 
@@ -546,16 +548,18 @@ fn scrambled_points_converge_faster() {
     let independent = measuring.predict(Order::Variance, &exact, by_elimination).unwrap();
     let quasi = measuring.quasi(1);
     let sizes = [64u64, 256, 1024, 4096, 16384];
-    let n_replicates = 200;
-    let errors = sizes.map(|n_points| {
-        let drawn = estimate(&quasi.with_points(n_points), n_replicates, SEED);
-        let error = (drawn.variance_of_mean.get(0, 0) * n_replicates as f64).sqrt();
-        assert!(error < 0.75 * independent.standard_error(n_points).get(0, 0), "{n_points} points: {error}");
-        error
-    });
-    // −½ for independent walks; a standard deviation from 200 replicates is good to 5 %, the slope to 0.02.
-    let line = fit_power_law(&sizes.map(|n| n as f64), &errors).unwrap();
-    assert!(line.slope < -0.6, "{line:?}: {errors:?}");
+    let n_replicates = 100;
+    for (quasi, steepest) in [(quasi.clone(), -0.55), (quasi.sorted(), -0.65)] {
+        let errors = sizes.map(|n_points| {
+            let drawn = estimate(&quasi.with_points(n_points), n_replicates, SEED);
+            let error = (drawn.variance_of_mean.get(0, 0) * n_replicates as f64).sqrt();
+            assert!(error < 0.5 * independent.standard_error(n_points).get(0, 0), "{n_points} points: {error}");
+            error
+        });
+        // −½ for independent walks; a standard deviation from 100 replicates is good to 7 %, the slope to 0.02.
+        let line = fit_power_law(&sizes.map(|n| n as f64), &errors).unwrap();
+        assert!(line.slope < steepest, "{}: {line:?}: {errors:?}", quasi.name());
+    }
 }
 
 // ---------------------------------------------------------------------------------------------------------------------------------

@@ -8,13 +8,18 @@
 //!
 //! A sample is a whole *replicate* of N points with its own scrambling: the spread of replicates is the error bar, and nothing else is.
 //!
-//! Cost: O(log n) a step, and ln 64 / −ln albedo steps a walk before roulette; 12 bytes an entry of G above zero. Source: Owen 1997, 1998;
-//! Keller 1996 (in radiosity).
+//! Long walks need many coordinates, and high dimensions are never even. *Sorted* replicates ([`QuasiWalk::sorted`]) need two: all walks take a step at a
+//! time, sorted by the bundles they stand on, and walk number k of the order steps by the k-th number of a fresh scrambled sequence, so that
+//! walks on neighbouring bundles spread evenly over where one may go from there. Still each walk alone is a Monte Carlo walk.
+//!
+//! Cost: O(log n) a step, O(log N) more where sorted, and ln 64 / −ln albedo steps a walk before roulette; 12 bytes an entry of G above zero. Source: Owen 1997, 1998;
+//! Keller 1996 (in radiosity); L'Ecuyer, Lécot & Tuffin 2008 (sorted).
 
 use super::super::bands::Bands;
 use super::super::bounces::Columns;
 use super::super::{Estimator, Score, Truth};
 use super::chain::Chain;
+use super::gathering::add;
 use super::measuring::Starts;
 use super::{MatrixWalk, MeasuringWalk, Scoring};
 use crate::linalg::{Block, LinearOperator};
@@ -41,6 +46,15 @@ pub struct QuasiWalk {
     /// One table of starts a measurement; none where every bundle is a start.
     starts: Vec<(Starts, CumulativeRows)>,
     n_points: u64,
+    is_sorted: bool,
+}
+
+/// A walk of a sorted replicate.
+struct Walker {
+    bundle: usize,
+    weights: Bands,
+    /// The largest weight it began with.
+    first: f64,
 }
 
 impl MatrixWalk {
@@ -55,16 +69,8 @@ impl MatrixWalk {
         let bundles = (0..n).flat_map(|i| chain.albedo.row(i).chain(worth.row(i))).collect();
         let columns = Columns { n_bands: chain.n_bands, bounces: self.bounces() };
         let first_bounce = self.scoring().first_bounce();
-        QuasiWalk {
-            columns,
-            first_bounce,
-            chain,
-            steps: Arc::new(steps),
-            bundles,
-            offset,
-            starts: Vec::new(),
-            n_points,
-        }
+        let (steps, starts) = (Arc::new(steps), Vec::new());
+        QuasiWalk { columns, first_bounce, chain, steps, bundles, offset, starts, n_points, is_sorted: false }
     }
 }
 
@@ -86,53 +92,98 @@ impl QuasiWalk {
         Self { n_points, ..self.clone() }
     }
 
-    /// Adds the share of walk number `index` to the totals, and counts its steps.
-    fn walk(&self, start: usize, points: PaddedSobol, index: u64, share: f64, totals: &mut [f64]) -> u64 {
-        // Begin on the bundle, or where the measurement looks.
+    /// The same walks, all of a replicate taken step by step in the order of their bundles. Memory: the walks of a replicate.
+    pub fn sorted(&self) -> Self {
+        Self { is_sorted: true, ..self.clone() }
+    }
+
+    /// A walk on its first bundle, or where the measurement looks by the number `uniform`; scores what is not sampled.
+    fn begin(&self, start: usize, uniform: f64, totals: &mut [f64]) -> Option<Walker> {
         let n_bands = self.columns.n_bands;
-        let mut weights = Bands::all(share, n_bands);
-        let (mut bundle, mut dimension) = (start, 0);
+        let mut weights = Bands::all(1.0 / self.n_points as f64, n_bands);
+        let mut bundle = start;
         if let Some((starts, table)) = self.starts.get(start) {
             // What rounding leaves above the last share counts as nothing drawn.
-            let Some(drawn) = table.sample(0, points.coordinate(index, 0)) else { return 0 };
-            (bundle, dimension) = (drawn, 1);
+            bundle = table.sample(0, uniform)?;
             weights.iter_mut().zip(starts.weights(bundle)).for_each(|(weight, w)| *weight *= w);
         }
         if let Some(offset) = &self.offset {
             let firsts = totals[..n_bands].iter_mut().zip(offset.row(bundle)).zip(weights.iter());
             firsts.for_each(|((total, e), weight)| *total += weight * e);
         }
-        let first = weights.iter().fold(0.0, |largest: f64, weight| largest.max(weight.abs()));
-        for n_steps in 0.. {
-            // Score the visit.
-            let Some(here) = self.columns.of(self.first_bounce + n_steps) else { return n_steps as u64 };
-            let (albedo, worth) = self.bundles[bundle * 2 * n_bands..][..2 * n_bands].split_at(n_bands);
-            for ((total, weight), worth) in totals[here].iter_mut().zip(weights.iter()).zip(worth) {
-                *total += weight * worth;
-            }
-
-            // Reflect; absorb only what carries little, and use what is left of the number.
-            let mut uniform = points.coordinate(index, dimension + n_steps);
-            weights.iter_mut().zip(albedo).for_each(|(weight, albedo)| *weight *= albedo);
-            let carried = weights.iter().fold(0.0, |largest: f64, weight| largest.max(weight.abs()));
-            if carried < LEAST_WEIGHT * first {
-                let survival = self.chain.survival[bundle];
-                if uniform >= survival {
-                    return n_steps as u64;
-                }
-                uniform /= survival;
-                weights.iter_mut().for_each(|weight| *weight /= survival);
-            }
-            let Some(next) = self.steps.sample(bundle, uniform) else { return n_steps as u64 + 1 };
-            bundle = next;
-        }
-        0
+        let first = largest(&weights);
+        Some(Walker { bundle, weights, first })
     }
+
+    /// Scores the visit after `n_steps` steps and moves on; false where the walk has ended.
+    #[inline]
+    fn go(&self, walker: &mut Walker, n_steps: usize, mut uniform: f64, totals: &mut [f64]) -> bool {
+        let n_bands = self.columns.n_bands;
+        let Some(here) = self.columns.of(self.first_bounce + n_steps) else { return false };
+        let (albedo, worth) = self.bundles[walker.bundle * 2 * n_bands..][..2 * n_bands].split_at(n_bands);
+        add(&mut totals[here], &walker.weights, worth);
+
+        // Reflect; absorb only what carries little, and use what is left of the number.
+        walker.weights.iter_mut().zip(albedo).for_each(|(weight, albedo)| *weight *= albedo);
+        if largest(&walker.weights) < LEAST_WEIGHT * walker.first {
+            let survival = self.chain.survival[walker.bundle];
+            if uniform >= survival {
+                return false;
+            }
+            uniform /= survival;
+            walker.weights.iter_mut().for_each(|weight| *weight /= survival);
+        }
+        let next = self.steps.sample(walker.bundle, uniform);
+        walker.bundle = next.unwrap_or(walker.bundle);
+        next.is_some()
+    }
+
+    /// One walk by one point; its steps.
+    fn walk(&self, start: usize, points: PaddedSobol, index: u64, totals: &mut [f64]) -> u64 {
+        let first_dimension = usize::from(!self.starts.is_empty());
+        let Some(mut walker) = self.begin(start, points.coordinate(index, 0), totals) else { return 0 };
+        let mut n_steps = 0;
+        while self.go(&mut walker, n_steps, points.coordinate(index, first_dimension + n_steps), totals) {
+            n_steps += 1;
+        }
+        n_steps as u64
+    }
+
+    /// All walks, step by step; their steps.
+    fn walk_sorted(&self, start: usize, stream: &mut Stream, totals: &mut [f64]) -> u64 {
+        let points = PaddedSobol::new(stream.bits());
+        let begin = |index| self.begin(start, points.coordinate(index, 0), totals);
+        let mut walkers: Vec<Walker> = (0..self.n_points).filter_map(begin).collect();
+        let mut n_all = 0;
+        for n_steps in 0.. {
+            if walkers.is_empty() {
+                break;
+            }
+            walkers.sort_by_key(|walker| walker.bundle);
+            let (points, mut index) = (PaddedSobol::new(stream.bits()), 0);
+            walkers.retain_mut(|walker| {
+                index += 1;
+                self.go(walker, n_steps, points.coordinate(index - 1, 0), totals)
+            });
+            n_all += walkers.len() as u64;
+        }
+        n_all
+    }
+}
+
+/// The largest magnitude.
+fn largest(weights: &[f64]) -> f64 {
+    weights.iter().fold(0.0, |largest: f64, weight| largest.max(weight.abs()))
 }
 
 impl Estimator for QuasiWalk {
     fn name(&self) -> &'static str {
-        if self.starts.is_empty() { "quasi-walk" } else { "quasi-measurement" }
+        match (self.starts.is_empty(), self.is_sorted) {
+            (true, false) => "quasi-walk",
+            (false, false) => "quasi-measurement",
+            (true, true) => "sorted-quasi-walk",
+            (false, true) => "sorted-quasi-measurement",
+        }
     }
 
     fn truth(&self) -> Truth {
@@ -152,11 +203,13 @@ impl Estimator for QuasiWalk {
     }
 
     fn sample(&self, start: usize, stream: &mut Stream, score: &mut Score) {
-        let points = PaddedSobol::new(stream.bits());
-        let (share, mut n_steps) = (1.0 / self.n_points as f64, 0);
-        for index in 0..self.n_points {
-            n_steps += self.walk(start, points, index, share, score.totals(start));
-        }
+        let totals = score.totals(start);
+        let n_steps = if self.is_sorted {
+            self.walk_sorted(start, stream, totals)
+        } else {
+            let points = PaddedSobol::new(stream.bits());
+            (0..self.n_points).map(|index| self.walk(start, points, index, totals)).sum()
+        };
         score.count_steps(n_steps);
     }
 }

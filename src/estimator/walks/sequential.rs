@@ -9,7 +9,8 @@
 //! exponentially with the work, where plain averaging halves it for four times the work, and the same number of walks suffices
 //! for any accuracy until the residual is rounding. N must exceed σ², or the error grows.
 //!
-//! The answer is an estimate of L with a known residual, not a mean with an error bar. Cost of a stage: one product, N walks a bundle.
+//! The answer is an estimate of L with a known residual, not a mean with an error bar. Cost of a stage: one product (two where expected
+//! values are scored), N walks a bundle.
 //! Source: Halton 1962, 1994.
 
 use super::super::{Bounces, estimate};
@@ -102,8 +103,9 @@ impl MatrixWalk {
                 best.copy_from(&radiance);
             }
             since_halved = if size <= 0.5 * since_halved.0 { (size, 0) } else { (since_halved.0, since_halved.1 + 1) };
+            let n_products = last.n_products + 1 + self.scoring().first_bounce();
             let n_steps = last.n_steps + correction.n_steps;
-            history.push(Stage { n_products: last.n_products + 1, n_steps, residual: size });
+            history.push(Stage { n_products, n_steps, residual: size });
         };
         SequentialEstimate { radiance: best, history, stop }
     }
