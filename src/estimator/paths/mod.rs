@@ -3,6 +3,7 @@
 mod bidirectional;
 mod density;
 mod emitters;
+mod glossy;
 mod heuristic;
 mod lanes;
 mod light_tracer;

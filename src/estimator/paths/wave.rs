@@ -11,14 +11,13 @@ use super::super::bounces::Columns;
 use super::lanes::{self, Draw, Lanes, N, Points, Turns, Vectors, Weigh};
 use super::path_tracer::{PathTracer, Sampling};
 use super::reflection::Reflection;
-use super::stage::Vertex;
 use crate::geometry::{Ray, Vec3};
 use crate::sampling::{Streams, warp};
 use crate::scene::Side;
 
 /// Some paths of one start under way. Lane k holds the k-th of those that have not ended.
 pub(super) struct Wave<'t, 'a> {
-    tracer: &'t PathTracer<'a>,
+    pub(super) tracer: &'t PathTracer<'a>,
     columns: Columns,
     /// Streams of the paths, and which of their blocks is next.
     streams: Streams,
@@ -29,24 +28,27 @@ pub(super) struct Wave<'t, 'a> {
     number: [u32; N],
     sample: [u64; N],
     /// Where it is: facet and side, position, the side's normal, and the direction of the ray that has come here.
-    place: [(u32, Side); N],
-    position: Vectors,
+    pub(super) place: [(u32, Side); N],
+    pub(super) position: Vectors,
     normal: Vectors,
-    arriving: Vectors,
+    pub(super) arriving: Vectors,
     /// Where it goes next.
-    direction: Vectors,
+    pub(super) direction: Vectors,
+    /// The same as rays, and the points on emitters that they may see: laid out as they are traced, and written well before.
+    rays: [Ray; N],
+    targets: [Vec3; N],
     /// By solid angle.
-    density: Lanes,
+    pub(super) density: Lanes,
     /// What it carries, band by band: on diffuse sides times the albedo, for that is what it carries on, whatever the direction.
-    carried: Vec<Lanes>,
+    pub(super) carried: Vec<Lanes>,
     is_diffuse: [bool; N],
-    uniform: [Lanes; 3],
+    pub(super) uniform: [Lanes; 3],
     /// Points on emitters, and what the geometry makes of their light.
-    emitter: [u32; N],
-    points: Points,
+    pub(super) emitter: [u32; N],
+    pub(super) points: Points,
     gain: Lanes,
     /// What every path has found, path by path, one number a column.
-    totals: Vec<f64>,
+    pub(super) totals: Vec<f64>,
     /// Closest hits and shadow rays so far.
     pub n_rays: u64,
 }
@@ -68,6 +70,8 @@ impl<'t, 'a> Wave<'t, 'a> {
             position: [ZERO; 3],
             normal: [ZERO; 3],
             arriving: [ZERO; 3],
+            rays: [Ray { origin: Vec3::ZERO, direction: Vec3::ZERO }; N],
+            targets: [Vec3::ZERO; N],
             direction: [ZERO; 3],
             density: ZERO,
             carried: vec![ZERO; columns.n_bands],
@@ -169,6 +173,7 @@ impl<'t, 'a> Wave<'t, 'a> {
         (self.number[to], self.sample[to]) = (self.number[k], self.sample[k]);
         self.place[to] = (facet as u32, side);
         lanes::set(&mut self.position, to, position);
+        self.rays[to].origin = position;
         lanes::set(&mut self.normal, to, face.frame.z);
         lanes::set(&mut self.arriving, to, arriving);
         self.is_diffuse[to] = matches!(reflection, Reflection::Diffuse(_));
@@ -181,15 +186,6 @@ impl<'t, 'a> Wave<'t, 'a> {
         }
     }
 
-    /// Where lane k is.
-    fn vertex(&self, k: usize) -> Option<Vertex<'t>> {
-        let (facet, side) = self.place[k];
-        let face = self.tracer.stage.face(facet as usize, side);
-        let given = face.frame.to_local(-lanes::get(&self.arriving, k));
-        let (facet, position) = (facet as usize, lanes::get(&self.position, k));
-        Some(Vertex { facet, side, position, frame: &face.frame, reflection: face.reflection.as_ref()?, given })
-    }
-
     /// Draws a point on the emitters for every path, and what of its light a diffuse surface would reflect.
     fn draw_emitters(&mut self) {
         self.draw();
@@ -198,7 +194,8 @@ impl<'t, 'a> Wave<'t, 'a> {
             let [choice, u, v] = [0, 1, 2].map(|d| self.uniform[d][k]);
             let (number, emitter) = emitters.choose(choice);
             self.emitter[k] = number as u32;
-            lanes::set(&mut self.points.position, k, emitter.point([u, v]));
+            self.targets[k] = emitter.point([u, v]);
+            lanes::set(&mut self.points.position, k, self.targets[k]);
             lanes::set(&mut self.points.normal, k, emitter.normal);
             self.points.density[k] = emitter.density;
         }
@@ -228,35 +225,10 @@ impl<'t, 'a> Wave<'t, 'a> {
                 continue;
             }
             self.n_rays += 1;
-            let (from, to) = (lanes::get(&self.position, k), lanes::get(&self.points.position, k));
-            if !stage.tracer.occluded(from, to, [facet, emitter.facet]) {
+            if !stage.tracer.occluded(self.rays[k].origin, self.targets[k], [facet, emitter.facet]) {
                 let found = self.totals[totals..].iter_mut().zip(self.carried.iter().zip(emitter.emission));
                 found.for_each(|(total, (carried, emission))| *total += carried[k] * emission * self.gain[k]);
             }
-        }
-    }
-
-    /// The same from a surface that is not diffuse: f E cosθ′ / p times the weight against finding it by a ray.
-    fn see_glossily(&mut self, k: usize, totals: usize) {
-        let (stage, emitter) = (&self.tracer.stage, self.tracer.stage.emitters.get(self.emitter[k] as usize));
-        let Some(vertex) = self.vertex(k) else { return };
-        let point = lanes::get(&self.points.position, k);
-        let offset = point - vertex.position;
-        let distance_squared = offset.length_squared();
-        let direction = offset / distance_squared.sqrt();
-        let incident = vertex.frame.to_local(direction);
-        let by_point = emitter.density * distance_squared / -direction.dot(emitter.normal);
-        let by_ray = vertex.reflection.density(vertex.given, incident);
-        let weight = self.tracer.sampling.weight(by_point, by_ray);
-        let mut light: Vec<f64> =
-            self.carried.iter().zip(emitter.emission).map(|(c, emission)| c[k] * emission).collect();
-        vertex.reflection.scale(vertex.given, incident, incident.z / by_point * weight, &mut light);
-        if light.iter().all(|light| *light <= 0.0) {
-            return;
-        }
-        self.n_rays += 1;
-        if !stage.tracer.occluded(vertex.position, point, [vertex.facet, emitter.facet]) {
-            self.totals[totals..].iter_mut().zip(&light).for_each(|(total, light)| *total += light);
         }
     }
 
@@ -266,17 +238,11 @@ impl<'t, 'a> Wave<'t, 'a> {
         let [u, v, _] = &self.uniform;
         let (direction, density) = (&mut self.direction, &mut self.density);
         Turns { n: self.n_alive, normal: &self.normal, uniform: [u, v], direction, density }.run();
-        for k in (0..self.n_alive).filter(|k| !self.is_diffuse[*k]) {
-            let Some(vertex) = self.vertex(k) else { continue };
-            let mut carried: Vec<f64> = self.carried.iter().map(|carried| carried[k]).collect();
-            match vertex.reflection.turn(vertex.given, [u[k], v[k]], &mut carried) {
-                Some(turn) => {
-                    lanes::set(&mut self.direction, k, vertex.frame.to_world(turn.direction));
-                    self.density[k] = turn.density;
-                }
-                None => carried.fill(0.0),
+        for k in 0..self.n_alive {
+            if !self.is_diffuse[k] {
+                self.turn_glossily(k);
             }
-            self.carried.iter_mut().zip(carried).for_each(|(all, carried)| all[k] = carried);
+            self.rays[k].direction = lanes::get(&self.direction, k);
         }
     }
 
@@ -293,12 +259,12 @@ impl<'t, 'a> Wave<'t, 'a> {
             }
             let gain = 1.0 / survival;
             self.n_rays += 1;
-            let (facet, direction) = (self.place[k].0 as usize, lanes::get(&self.direction, k));
-            let ray = Ray { origin: lanes::get(&self.position, k), direction };
-            let Some(hit) = stage.tracer.closest(&ray, Some(facet)) else { continue };
+            let facet = self.place[k].0 as usize;
+            let Some(hit) = stage.tracer.closest(&self.rays[k], Some(facet)) else { continue };
+            let ray = self.rays[k];
             let density = stage.emitters.density(hit.polygon);
             if density > 0.0 && hit.front && tracer.sampling != Sampling::Emitters {
-                let cosine = -direction.dot(stage.face(hit.polygon, Side::Front).frame.z);
+                let cosine = -ray.direction.dot(stage.face(hit.polygon, Side::Front).frame.z);
                 let weight = gain * tracer.sampling.weight(self.density[k], density * hit.t * hit.t / cosine);
                 let totals = &mut self.totals[self.number[k] as usize * n_columns + column..];
                 let bands = self.carried.iter().zip(stage.emission(hit.polygon, Side::Front));
@@ -306,7 +272,7 @@ impl<'t, 'a> Wave<'t, 'a> {
                 found.for_each(|(total, (carried, emission))| *total += carried[k] * weight * emission);
             }
             let side = if hit.front { Side::Front } else { Side::Back };
-            self.arrive(k, (hit.polygon, side), ray.at(hit.t), direction, gain);
+            self.arrive(k, (hit.polygon, side), ray.at(hit.t), ray.direction, gain);
         }
     }
 }
