@@ -60,6 +60,9 @@ Examples:
   Of what differs from band to band there is a file a band; in Radiance's format, one with a component a band.";
 
 /// A method of every kind.
+/// What `study` estimates with unless told otherwise.
+const STUDY_ESTIMATORS: &str = "collision-walk,absorption-walk,path-tracer,light-tracer,bidirectional";
+
 const STUDY_SOLVERS: &str = "lu,gth,cholesky,neumann,gauss-seidel,southwell,chebyshev,cg,deflated-cg,gmres";
 
 const STUDY_EXAMPLES: &str = "\
@@ -168,6 +171,10 @@ pub struct Study {
     #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = STUDY_SOLVERS)]
     #[arg(value_parser = clap::builder::PossibleValuesParser::new([solver_names(), vec!["all"]].concat()))]
     pub solvers: Vec<String>,
+
+    /// Random methods to compare, or all; the path tracer is always among them, and what one refuses is reported
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = STUDY_ESTIMATORS)]
+    pub estimators: Vec<String>,
 
     /// Stop iterative solvers at this relative residual
     #[arg(long, value_name = "RESIDUAL", default_value = "1e-12", value_parser = positive, allow_negative_numbers = true)]

@@ -20,7 +20,8 @@ const N_BOUNCES: usize = 5;
 
 pub fn run(arguments: &Arguments, study: &Study, command: Vec<String>) -> Result<(), Failure> {
     study::check_albedos(&study.albedo)?;
-    let chosen = choose(&study.scene, |scene, n| study::memory_estimate(scene, n, N_BOUNCES))?;
+    let estimators = study::choose_estimators(&study.estimators)?;
+    let chosen = choose(&study.scene, |scene, n| study::memory_estimate(scene, n, N_BOUNCES, &estimators))?;
     let scene = &chosen.scene;
     let folder = study.output.clone().unwrap_or_else(|| PathBuf::from("out").join(folder_name(scene.name())));
     output::check_folder(&folder)?;
@@ -38,6 +39,7 @@ pub fn run(arguments: &Arguments, study: &Study, command: Vec<String>) -> Result
     let settings = StudySettings {
         resolution: chosen.resolution,
         solvers: solvers(&study.solvers),
+        estimators,
         n_levels: 3,
         tolerance: study.tolerance,
         albedos: study.albedo.clone(),
@@ -101,13 +103,14 @@ fn solvers(asked: &[String]) -> Vec<String> {
     chosen.into_iter().map(|(name, _)| name.to_string()).collect()
 }
 
-fn describe(settings: &StudySettings) -> [(&'static str, String); 10] {
+fn describe(settings: &StudySettings) -> [(&'static str, String); 11] {
     let albedos = match &settings.albedos[..] {
         [] => "the scene's own".to_string(),
         list => list.iter().map(f64::to_string).collect::<Vec<_>>().join(", "),
     };
     [
         ("solvers", settings.solvers.join(", ")),
+        ("estimators", settings.estimators.join(", ")),
         ("solver_tolerance", format!("{:e}", settings.tolerance)),
         ("albedos", albedos),
         ("products_at_an_albedo", settings.albedo_budget.to_string()),

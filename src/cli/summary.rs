@@ -1,6 +1,6 @@
 //! A study as tables to read.
 
-use crate::study::{AlbedoStudy, Duality, EstimatorRun, Refinement, SolverRun, StudyOutcome};
+use crate::study::{AlbedoStudy, Duality, EstimatorRun, Refinement, SequentialRun, SolverRun, StudyOutcome};
 use std::path::Path;
 
 /// What a person wants to know first.
@@ -8,6 +8,7 @@ pub fn summary(outcome: &StudyOutcome, folder: &Path) -> String {
     let mut parts = vec![solvers(&outcome.solvers), duality(&outcome.duality)];
     parts.extend(outcome.albedos.as_ref().map(albedos));
     parts.push(estimators(&outcome.estimators));
+    parts.extend(outcome.sequential.as_ref().map(sequential));
     parts.push(format!("matrix against path tracer: {}\n", finding(&outcome.refinement)));
     parts.push(format!("{}\n", folder.join("report.html").display()));
     parts.join("\n")
@@ -73,15 +74,66 @@ fn albedos(study: &AlbedoStudy) -> String {
 }
 
 fn estimators(runs: &[EstimatorRun]) -> String {
-    let mut text = format!("{:26} {:>9} {:>10} {:>10} {:>10}\n", "estimator", "slope", "seconds", "worst |z|", "p");
+    let name = |run: &EstimatorRun| format!("{} ({})", run.estimator, run.truth);
+    let width = runs.iter().map(|run| name(run).chars().count()).fold(26, usize::max);
+    let mut text = format!(
+        "{:width$} {:>9} {:>10} {:>9} {:>9} {:>9} {:>8} {:>10} {:>9} {:>8}\n",
+        "estimator", "samples", "seconds", "error", "foretold", "slope", "|z|", "p", "1/(v s)", "N(1 %)"
+    );
     for run in runs {
-        let name = format!("{} ({})", run.estimator, run.truth);
+        if let Some(refusal) = &run.refusal {
+            text += &format!("{:width$} refused: {refusal}\n", name(run));
+            continue;
+        }
+        let last = run.points.last();
+        let foretold = last.and_then(|p| p.predicted).map_or("–".to_string(), |e| format!("{e:.2e}"));
         text += &format!(
-            "{name:26} {:>9.2} {:>10.3} {:>10.2} {:>10.1e}\n",
-            run.slope, run.seconds, run.worst_z, run.p_value
+            "{:width$} {:>9} {:>10.3} {:>9.2e} {foretold:>9} {:>9.2} {:>8.2} {:>10.1e} {:>9.1e} {:>8.1e}\n",
+            name(run),
+            last.map_or(0, |p| p.samples_per_bundle),
+            run.seconds,
+            last.map_or(f64::NAN, |p| p.error),
+            run.slope,
+            run.worst_z,
+            run.p_value,
+            run.efficiency,
+            run.samples_for_percent
+        );
+    }
+    for (run, variance) in runs.iter().filter_map(|run| Some((run, run.variance.as_ref()?))) {
+        text += &format!(
+            "{:width$} variance {:.4} ± {:.4} of the foretold (p = {:.1e})\n",
+            run.estimator, variance.ratio, variance.standard_error, variance.p_value
+        );
+    }
+    for (run, mesh) in runs.iter().filter_map(|run| Some((run, run.mesh.as_ref()?))) {
+        let other = mesh.p_value.map_or(String::new(), |p| format!(", p = {p:.1e} against the path tracer"));
+        text += &format!(
+            "{:width$} {:.2} % off the matrix, {:.2} % of it noise{other}\n",
+            run.estimator,
+            100.0 * mesh.difference,
+            100.0 * mesh.noise
         );
     }
     text
+}
+
+/// How steeply its error fell, and where it ended.
+fn sequential(run: &SequentialRun) -> String {
+    if let Some(refusal) = &run.refusal {
+        return format!("{} refused: {refusal}\n", run.estimator);
+    }
+    let last = run.stages.last();
+    format!(
+        "{}: {} stages of {} walks a bundle, {:.3} s, each × {:.2e}, error {:.1e} ({})\n",
+        run.estimator,
+        run.stages.len(),
+        run.n_walks,
+        run.seconds,
+        run.factor,
+        last.map_or(f64::NAN, |stage| stage.error),
+        run.stop
+    )
 }
 
 fn finding(refinement: &Refinement) -> String {

@@ -1,7 +1,10 @@
 //! The numbers behind the figures and tables, as CSV.
 
 use super::csv::{Csv, Field};
-use crate::study::{AlbedoStudy, BandSpectrum, EstimatorRun, Refinement, SolverRun, Truncation};
+use crate::study::{
+    AlbedoStudy, BandSpectrum, EstimatorRun, MeshAgreement, Refinement, SequentialRun, SolverRun, Truncation,
+    VarianceAgreement,
+};
 
 /// One row an iteration; what was not predicted is empty.
 pub fn convergence(solvers: &[SolverRun]) -> Vec<u8> {
@@ -34,7 +37,6 @@ pub fn solvers(solvers: &[SolverRun]) -> Vec<u8> {
         "duality_difference",
     ]);
     for run in solvers {
-        let optional = |value: Option<f64>| value.map_or(Field::Text(""), Field::Number);
         csv.row(&[
             Field::Text(&run.solver),
             Field::Text(&run.kind),
@@ -96,22 +98,96 @@ pub fn truncation(series: &[Truncation]) -> Vec<u8> {
     csv.into_bytes()
 }
 
-/// estimator, truth, samples_per_bundle, error, standard_error: one row a sample count.
+/// One row an estimator and sample count; what was not predicted is empty.
 pub fn monte_carlo(estimators: &[EstimatorRun]) -> Vec<u8> {
-    let mut csv = Csv::new(&["estimator", "truth", "samples_per_bundle", "error", "standard_error"]);
+    let mut csv = Csv::new(&[
+        "estimator",
+        "truth",
+        "samples_per_bundle",
+        "error",
+        "standard_error",
+        "predicted_standard_error",
+        "steps",
+        "seconds",
+    ]);
     for run in estimators {
         for p in &run.points {
-            let [error, standard_error] = [p.error, p.standard_error].map(Field::Number);
+            let [error, standard_error, seconds] = [p.error, p.standard_error, p.seconds].map(Field::Number);
             csv.row(&[
                 Field::Text(&run.estimator),
                 Field::Text(&run.truth),
                 Field::Count(p.samples_per_bundle),
                 error,
                 standard_error,
+                optional(p.predicted),
+                Field::Count(p.steps),
+                seconds,
             ]);
         }
     }
     csv.into_bytes()
+}
+
+/// One row an estimator; what does not apply to it is empty.
+pub fn estimators(estimators: &[EstimatorRun]) -> Vec<u8> {
+    let mut csv = Csv::new(&[
+        "estimator",
+        "truth",
+        "slope",
+        "seconds_slope",
+        "efficiency",
+        "samples_for_percent",
+        "variance_ratio",
+        "variance_ratio_standard_error",
+        "variance_p_value",
+        "worst_z",
+        "degrees_of_freedom",
+        "n_comparisons",
+        "p_value",
+        "difference_from_matrix",
+        "difference_noise",
+        "p_value_against_path_tracer",
+        "seconds",
+    ]);
+    for run in estimators {
+        let variance = |of: &dyn Fn(&VarianceAgreement) -> f64| optional(run.variance.as_ref().map(of));
+        let mesh = |of: &dyn Fn(&MeshAgreement) -> Option<f64>| optional(run.mesh.as_ref().and_then(of));
+        csv.row(&[
+            Field::Text(&run.estimator),
+            Field::Text(&run.truth),
+            Field::Number(run.slope),
+            Field::Number(run.seconds_slope),
+            Field::Number(run.efficiency),
+            Field::Number(run.samples_for_percent),
+            variance(&|v| v.ratio),
+            variance(&|v| v.standard_error),
+            variance(&|v| v.p_value),
+            Field::Number(run.worst_z),
+            optional(run.n_degrees_of_freedom),
+            Field::Count(run.n_comparisons as u64),
+            Field::Number(run.p_value),
+            mesh(&|m| Some(m.difference)),
+            mesh(&|m| Some(m.noise)),
+            mesh(&|m| m.p_value),
+            Field::Number(run.seconds),
+        ]);
+    }
+    csv.into_bytes()
+}
+
+/// products, steps, seconds, residual, error: one row a stage.
+pub fn sequential(run: &SequentialRun) -> Vec<u8> {
+    let mut csv = Csv::new(&["products", "steps", "seconds", "residual", "error"]);
+    for stage in &run.stages {
+        let [seconds, residual, error] = [stage.seconds, stage.residual, stage.error].map(Field::Number);
+        csv.row(&[Field::Count(stage.products as u64), Field::Count(stage.steps), seconds, residual, error]);
+    }
+    csv.into_bytes()
+}
+
+/// What is absent is empty.
+fn optional(value: Option<f64>) -> Field<'static> {
+    value.map_or(Field::Text(""), Field::Number)
 }
 
 /// patch_size, n_bundles, error, noise: one row a level.

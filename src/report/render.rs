@@ -1,6 +1,8 @@
 //! From an outcome to all files of its report.
 
-use super::figure::{Sheet, albedos, convergence, monte_carlo, refinement, spectrum, to_png, to_svg, truncation};
+use super::figure::{
+    Sheet, albedos, convergence, monte_carlo, refinement, sequential, spectrum, to_png, to_svg, truncation,
+};
 use super::page::{FigureOnPage, FiguresOnPage, page};
 use super::picture::pictures;
 use super::{Artifact, ReportError, SCHEMA, data};
@@ -38,8 +40,14 @@ pub fn render(outcome: &StudyOutcome) -> Result<Vec<Artifact>, ReportError> {
         None => None,
     };
 
+    let sequential = match &outcome.sequential {
+        Some(run) => Some(draw(&mut files, "sequential", sequential(run), data::sequential(run))?),
+        None => None,
+    };
+
     // Write the tables.
     files.push(Artifact { name: "solvers.csv".into(), bytes: data::solvers(&outcome.solvers) });
+    files.push(Artifact { name: "estimators.csv".into(), bytes: data::estimators(&outcome.estimators) });
     files.push(Artifact { name: "surfaces.csv".into(), bytes: data::surfaces(&outcome.refinement) });
 
     // Encode the pictures.
@@ -51,7 +59,7 @@ pub fn render(outcome: &StudyOutcome) -> Result<Vec<Artifact>, ReportError> {
     }
 
     // Compose the page, and list everything in report.json.
-    let figures = FiguresOnPage { convergence, albedos, truncation, monte_carlo, refinement };
+    let figures = FiguresOnPage { convergence, albedos, truncation, monte_carlo, sequential, refinement };
     let html = page(outcome, &figures, shown.as_ref(), &files);
     files.insert(0, Artifact { name: "report.html".into(), bytes: html.into_bytes() });
     let names = files.iter().map(|file| file.name.as_str()).collect();

@@ -21,6 +21,8 @@ pub enum StudyError {
     Merge(#[from] MergeError),
     #[error("a study needs at least one estimator and one sample")]
     NoEstimator,
+    #[error("no estimator '{name}'; there are {known}, and all of them by 'all'")]
+    UnknownEstimator { name: String, known: String },
     #[error("a study needs at least one solver")]
     NoSolver,
     #[error("an albedo of {albedo} is out of range: 0 ≤ albedo < 1, for at 1 nothing is absorbed")]

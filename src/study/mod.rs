@@ -1,9 +1,11 @@
 //! Experiments: what varies, what is held, what is recorded.
 
+mod agreement;
 mod albedo;
 mod duality;
 mod error;
 mod estimation;
+mod estimators;
 mod foretold;
 mod memory;
 mod methods;
@@ -13,6 +15,7 @@ mod refinement;
 mod repairs;
 mod run;
 mod sensitivity;
+mod sequential;
 mod spectrum;
 mod truncation;
 mod watch;
@@ -21,10 +24,12 @@ mod what_if;
 pub use albedo::{albedo_study, check_albedos};
 pub use duality::{Duality, LinearSensor};
 pub use error::StudyError;
+pub use estimators::{Approach, choose_estimators, estimator_names};
 pub use memory::memory_estimate;
 pub use outcome::{
-    AdjointRun, AlbedoLevel, AlbedoStudy, EstimatorRun, ExchangeSummary, Family, HistoryPoint, LawsMeasured, Pictures,
-    Refinement, RefinementLevel, RepairRun, SamplePoint, SolverRun, StudyOutcome, SurfaceMean, Truncation,
+    AdjointRun, AlbedoLevel, AlbedoStudy, EstimatorRun, ExchangeSummary, Family, HistoryPoint, LawsMeasured,
+    MeshAgreement, Pictures, Refinement, RefinementLevel, RepairRun, SamplePoint, SequentialPoint, SequentialRun,
+    SolverRun, StudyOutcome, SurfaceMean, Truncation, VarianceAgreement,
 };
 pub use provenance::Provenance;
 pub use refinement::surface_means;

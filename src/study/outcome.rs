@@ -1,6 +1,6 @@
 //! What a study records. Plain data; `report` turns it into figures and a page.
 
-use super::{Duality, Provenance};
+use super::{Approach, Duality, Provenance};
 use crate::image::Image;
 use serde::Serialize;
 
@@ -29,6 +29,8 @@ pub struct StudyOutcome {
     /// Truncated Neumann series after 0, 1, 2, … bounces, against the discrete truth.
     pub truncation: Vec<Truncation>,
     pub estimators: Vec<EstimatorRun>,
+    /// Where it was asked for.
+    pub sequential: Option<SequentialRun>,
     pub refinement: Refinement,
     /// Wall seconds by stage, in order.
     pub stages: Vec<(String, f64)>,
@@ -189,17 +191,36 @@ pub struct Truncation {
 #[derive(Clone, Debug, Serialize)]
 pub struct EstimatorRun {
     pub estimator: String,
-    /// "discrete" for walks on the matrix, "continuous" for path tracers: which truth it estimates.
+    pub approach: Approach,
+    /// "discrete" for walks on the matrix, "continuous" for light paths: which truth it estimates.
     pub truth: String,
+    /// What it said where it refused the scene; its other numbers are not numbers then.
+    pub refusal: Option<String>,
     pub points: Vec<SamplePoint>,
-    /// Largest |z| against the discrete solution at the largest sample count, over bundles pooled until each comparison is normal.
+    /// Largest difference from the discrete solution over its own standard error, at the largest sample count, over bundles pooled until each
+    /// comparison is normal.
     pub worst_z: f64,
+    /// Of the t that `worst_z` is where the error bars rest on few batches; absent where it is normal.
+    pub n_degrees_of_freedom: Option<f64>,
     /// How many z-scores were looked at; 0 where the samples are too few for any.
     pub n_comparisons: usize,
     /// Probability of a |z| this large somewhere, were the two equal (Šidák-corrected).
     pub p_value: f64,
     /// Fitted slope of log error against log samples; −1/2 is Monte Carlo.
     pub slope: f64,
+    /// Fitted slope of log error against log seconds.
+    pub seconds_slope: f64,
+    /// 1 / (relative variance × seconds), s⁻¹, at the largest sample count.
+    pub efficiency: f64,
+    /// Samples a bundle for a relative standard error of 1 %: as predicted where it was, else from what was measured.
+    pub samples_for_percent: f64,
+    /// Measured variance against the predicted one; absent where none was predicted or the samples are too few to tell.
+    pub variance: Option<VarianceAgreement>,
+    /// Why the variance of a walk was not predicted.
+    pub prediction_refusal: Option<String>,
+    /// Of continuous methods: how far from the matrix, and whether by what the mesh leaves.
+    pub mesh: Option<MeshAgreement>,
+    /// Drawing samples, prediction and comparison not counted.
     pub seconds: f64,
 }
 
@@ -209,8 +230,68 @@ pub struct SamplePoint {
     pub samples_per_bundle: u64,
     /// Étendue-weighted root mean square difference from the discrete truth, relative to its root mean square.
     pub error: f64,
-    /// The same, as predicted by the estimator's own standard errors.
+    /// The same, as the estimator's own measured standard errors have it.
     pub standard_error: f64,
+    /// The same, as the linear system of its variance foretold before any sample was drawn.
+    pub predicted: Option<f64>,
+    /// Steps of walks, or rays, so far.
+    pub steps: u64,
+    /// Wall seconds of drawing so far.
+    pub seconds: f64,
+}
+
+/// The étendue-weighted mean variance of a sample, over the predicted one.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct VarianceAgreement {
+    pub ratio: f64,
+    /// Of the ratio, were the prediction true.
+    pub standard_error: f64,
+    /// Probability of a ratio at least this far out.
+    pub p_value: f64,
+}
+
+/// A continuous method against the finest matrix, by surfaces' mean reflected radiance.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct MeshAgreement {
+    /// Area-weighted root mean square difference, relative, as in [`Refinement`].
+    pub difference: f64,
+    /// Its statistical part.
+    pub noise: f64,
+    /// True if every surface's mean that can be compared, at least one, differs by the discretisation error that the refinement estimates,
+    /// within statistical error. False where there is one mesh only.
+    pub agrees: bool,
+    /// Largest |t| of the difference from the reference path tracer's means, which knows no mesh either; absent for that one.
+    pub worst_t: Option<f64>,
+    /// Probability of one so large, were the two equal (Šidák-corrected).
+    pub p_value: Option<f64>,
+}
+
+/// Sequential Monte Carlo: its answer is corrected stage by stage, and its error falls exponentially.
+#[derive(Clone, Debug, Serialize)]
+pub struct SequentialRun {
+    pub estimator: String,
+    pub refusal: Option<String>,
+    /// Walks a bundle and stage.
+    pub n_walks: u64,
+    /// Why it stopped, as one word: "converged", "budget", "stalled", "refused".
+    pub stop: String,
+    pub stages: Vec<SequentialPoint>,
+    /// What a stage multiplies the error by: fitted until rounding. NaN for fewer than two stages.
+    pub factor: f64,
+    pub seconds: f64,
+}
+
+/// After one stage.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct SequentialPoint {
+    pub products: usize,
+    /// Steps of walks so far.
+    pub steps: u64,
+    pub seconds: f64,
+    /// ‖E + K L − L‖∞ / ‖E‖∞.
+    pub residual: f64,
+    /// Étendue-weighted root mean square difference from the discrete truth, relative to its root mean square.
+    pub error: f64,
 }
 
 /// The same scene at finer and finer patches, held against the path tracer's continuous truth.

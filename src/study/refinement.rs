@@ -1,12 +1,11 @@
 //! How the answer of the matrix approaches the scene's own as patches shrink.
 
-use super::outcome::{Refinement, RefinementLevel, SurfaceMean};
+use super::outcome::{MeshAgreement, Refinement, RefinementLevel, SurfaceMean};
 use crate::basis::Bundles;
 use crate::compare::observed_order;
-use crate::estimator::Estimate;
 use crate::linalg::Block;
 use crate::scene::Scene;
-use crate::stats::critical_z;
+use crate::stats::{critical_z, sidak, sidak_level, student_critical, student_tail, two_sided_p};
 
 /// Orders a discretisation error is extrapolated with: constant patches give at most two, and two meshes that hardly differ prove
 /// nothing.
@@ -32,6 +31,16 @@ impl LevelSolution {
         let (reflected, _) = surface_means(scene, bundles, &reflected, None);
         Self { patch_size: bundles.resolution().patch_size, n_bundles: bundles.n_bundles(), reflected }
     }
+}
+
+/// Means of the reflected radiance of surfaces by a continuous method, surfaces × bands.
+#[derive(Clone, Debug)]
+pub struct SurfaceSample {
+    pub mean: Block,
+    /// Variance of `mean`.
+    pub variance: Block,
+    /// That every variance rests on; absent where they are many.
+    pub n_degrees_of_freedom: Option<f64>,
 }
 
 /// Étendue-weighted mean over each surface, and the variance of that mean from variances of independent entries.
@@ -65,17 +74,15 @@ pub fn compare(
     scene: &Scene,
     bundles: &Bundles,
     levels: &[LevelSolution],
-    paths: &Estimate,
+    paths: &SurfaceSample,
     emission: &Block,
     significance: f64,
 ) -> Refinement {
     let areas: Vec<f64> = scene.surfaces().iter().map(|s| s.area()).collect();
-    let mut reflected = paths.mean.clone();
-    reflected.add_scaled(-1.0, emission);
-    let (truth, variance) = surface_means(scene, bundles, &reflected, Some(&paths.variance_of_mean));
+    let SurfaceSample { mean: truth, variance, .. } = paths;
     let (emitted, _) = surface_means(scene, bundles, emission, None);
-    let size = weigh(&truth, &areas, |v| v * v);
-    let noise = (weigh(&variance, &areas, |v| v) / size).sqrt();
+    let size = weigh(truth, &areas, |v| v * v);
+    let noise = (weigh(variance, &areas, |v| v) / size).sqrt();
     let difference = |a: &Block, b: &Block| {
         let mut d = a.clone();
         d.add_scaled(-1.0, b);
@@ -88,7 +95,7 @@ pub fn compare(
         .map(|level| RefinementLevel {
             patch_size: level.patch_size,
             n_bundles: level.n_bundles,
-            error: difference(&level.reflected, &truth),
+            error: difference(&level.reflected, truth),
             noise,
         })
         .collect();
@@ -149,6 +156,56 @@ pub fn compare(
         finest_error,
         agrees,
         surfaces,
+    }
+}
+
+/// Holds one continuous method against the finest level, whose surfaces `refinement` has, and against the reference's means unless it is the
+/// reference.
+pub fn hold(
+    scene: &Scene,
+    refinement: &Refinement,
+    finest: &LevelSolution,
+    sample: &SurfaceSample,
+    reference: Option<&SurfaceSample>,
+    significance: f64,
+) -> MeshAgreement {
+    let areas: Vec<f64> = scene.surfaces().iter().map(|s| s.area()).collect();
+    let size = weigh(&finest.reflected, &areas, |v| v * v);
+    let mut apart = finest.reflected.clone();
+    apart.add_scaled(-1.0, &sample.mean);
+    let n = sample.mean.values().len();
+    let alone = sidak_level(significance, n);
+    let critical =
+        sample.n_degrees_of_freedom.map_or_else(|| critical_z(significance, n), |d| student_critical(alone / 2.0, d));
+
+    // Look at every surface that enough light has found.
+    let (mut agrees, mut n_comparable, mut n_compared, mut worst) = (true, 0, 0, 0.0_f64);
+    for (k, surface) in refinement.surfaces.iter().enumerate() {
+        let n_bands = sample.mean.n_columns();
+        let (s, band) = (k / n_bands, k % n_bands);
+        let (mean, variance) = (sample.mean.get(s, band), sample.variance.get(s, band));
+        if !surface.is_comparable || (mean != 0.0 && mean * mean < FEWEST_SCORES * variance) {
+            continue;
+        }
+        n_comparable += 1;
+        let rounding = 1e-12 * mean.abs();
+        agrees &= apart.get(s, band).abs() <= surface.discretisation_error + critical * variance.sqrt() + rounding;
+        if let Some(reference) = reference {
+            let error = (variance + reference.variance.get(s, band)).sqrt().hypot(rounding);
+            if error > 0.0 {
+                n_compared += 1;
+                worst = worst.max((mean - reference.mean.get(s, band)).abs() / error);
+            }
+        }
+    }
+    let p_of =
+        |t: f64| sample.n_degrees_of_freedom.map_or_else(|| two_sided_p(t), |d| (2.0 * student_tail(t, d)).min(1.0));
+    MeshAgreement {
+        difference: (weigh(&apart, &areas, |v| v * v) / size).sqrt(),
+        noise: (weigh(&sample.variance, &areas, |v| v) / size).sqrt(),
+        agrees: agrees && n_comparable > 0 && refinement.levels.len() > 1,
+        worst_t: reference.map(|_| worst),
+        p_value: reference.map(|_| sidak(p_of(worst), n_compared.max(1))),
     }
 }
 

@@ -2,17 +2,18 @@
 
 use super::albedo::{albedo_study, check_albedos};
 use super::duality::LinearSensor;
-use super::estimation::estimate_growing;
+use super::estimation::{Estimated, estimate_growing};
+use super::estimators::{REFERENCE, Roster, SEQUENTIAL, choose_estimators};
 use super::methods::{Solved, solve_all};
 use super::outcome::*;
 use super::refinement::{self, LevelSolution};
 use super::repairs;
+use super::sequential::run_sequential;
 use super::truncation::truncate;
 use super::watch::Watch;
 use super::{Provenance, StudyError};
 use crate::assembly::{Exchange, Gather, Measurement, System, assemble_watched};
 use crate::basis::{Bundles, Resolution};
-use crate::estimator::{Estimator, MatrixWalk, PathTracer, Scoring};
 use crate::linalg::{Block, LinearOperator};
 use crate::oracle;
 use crate::scene::Scene;
@@ -26,6 +27,9 @@ pub struct StudySettings {
     pub resolution: Resolution,
     /// Names of the methods that solve it, a direct one first: the reference.
     pub solvers: Vec<String>,
+    /// Names of the random methods, see [`choose_estimators`](super::choose_estimators); the path tracer runs in any case, as the continuous
+    /// truth.
+    pub estimators: Vec<String>,
     /// Meshes compared, the finest included; three show an order.
     pub n_levels: usize,
     /// On ‖E + K L − L‖∞ / ‖E‖∞ of every iterative solver.
@@ -60,6 +64,7 @@ pub fn run(
     watch: &dyn Watch,
 ) -> Result<StudyOutcome, StudyError> {
     check_albedos(&settings.albedos)?;
+    let names = choose_estimators(&settings.estimators)?;
     let mut stages = Stages { watch, seconds: Vec::new() };
 
     // Assemble the finest mesh, and hold it to the four laws.
@@ -84,48 +89,61 @@ pub fn run(
     let truncation = stages.time("truncate", |_| truncate(&system, &truth, 60));
 
     // Estimate it by every estimator, walks against the matrix and paths against the scene.
-    let collision = stages.time("build tables", |_| MatrixWalk::collision(&system))?;
-    let absorption = collision.with_scoring(Scoring::Absorption);
-    let tracer = PathTracer::new(scene, &bundles)?;
-    let mut estimators = Vec::new();
-    let mut last = None;
-    let everyone: [(&str, &dyn Estimator, u64); 3] = [
-        ("collision walks", &collision, settings.walk_samples),
-        ("absorption walks", &absorption, settings.walk_samples),
-        ("path tracer", &tracer, settings.path_samples),
-    ];
-    for (stage, estimator, samples) in everyone {
-        let (run, estimate) =
-            stages.time(stage, |progress| estimate_growing(estimator, samples, settings, &truth, &system, progress))?;
-        estimators.push(run);
-        last = Some(estimate);
+    let roster = stages.time("build tables", |_| Roster::new(scene, &bundles, &system, &truth));
+    let (mut estimators, mut sampled, mut reference) = (Vec::new(), Vec::new(), None);
+    for name in names.iter().filter(|name| *name != SEQUENTIAL) {
+        match stages.time(name, |progress| estimate_growing(&roster, name, settings, progress)) {
+            Ok(Estimated { run, surfaces }) => {
+                estimators.push(run);
+                sampled.push(surfaces.clone());
+                reference = surfaces.filter(|_| name == REFERENCE).or(reference);
+            }
+            // Without a continuous truth there is no study; what another method refuses is recorded.
+            Err(StudyError::Estimator(refusal)) if name != REFERENCE => {
+                estimators.push(EstimatorRun::refused(name, &refusal));
+                sampled.push(None);
+            }
+            Err(error) => return Err(error),
+        }
     }
-    let path_estimate = last.ok_or(StudyError::NoEstimator)?;
+    let reference = reference.ok_or(StudyError::NoEstimator)?;
+    let is_sequential = names.iter().any(|name| name == SEQUENTIAL);
+    let sequential =
+        is_sequential.then(|| stages.time(SEQUENTIAL, |progress| run_sequential(&roster, settings, progress)));
+    drop(roster);
 
     // Refine: the same scene on coarser meshes.
-    let refinement = stages.time("refine", |progress| -> Result<Refinement, StudyError> {
-        let mut levels = Vec::new();
-        for k in (1..settings.n_levels).rev() {
-            // Where facets are smaller than patches, a coarser mesh is the same mesh and shows nothing.
-            let patch_size = settings.resolution.patch_size * (1u64 << k) as f64;
-            let resolution = Resolution { patch_size, ..settings.resolution };
-            let finer = levels.last().map_or(0, |level: &LevelSolution| level.n_bundles);
-            if !patch_size.is_finite() || Bundles::count(scene, resolution)? <= finer {
-                continue;
+    let (refinement, finest) =
+        stages.time("refine", |progress| -> Result<(Refinement, LevelSolution), StudyError> {
+            let mut levels = Vec::new();
+            for k in (1..settings.n_levels).rev() {
+                // Where facets are smaller than patches, a coarser mesh is the same mesh and shows nothing.
+                let patch_size = settings.resolution.patch_size * (1u64 << k) as f64;
+                let resolution = Resolution { patch_size, ..settings.resolution };
+                let finer = levels.last().map_or(0, |level: &LevelSolution| level.n_bundles);
+                if !patch_size.is_finite() || Bundles::count(scene, resolution)? <= finer {
+                    continue;
+                }
+                let coarse = Bundles::new(scene, resolution)?;
+                if coarse.n_bundles() >= bundles.n_bundles() {
+                    continue;
+                }
+                // Each level costs some sixteen times the one before.
+                let share = |done: f64| progress(done * 16f64.powi(1 - k as i32));
+                let coarse_system = assemble_watched(scene, &coarse, settings.exchange, &share)?;
+                let solution = solver::Cg { tolerance: settings.tolerance }.solve(coarse_system.equation(), &mut ())?;
+                levels.push(LevelSolution::new(scene, &coarse, &solution.radiance, coarse_system.emission()));
             }
-            let coarse = Bundles::new(scene, resolution)?;
-            if coarse.n_bundles() >= bundles.n_bundles() {
-                continue;
-            }
-            // Each level costs some sixteen times the one before.
-            let share = |done: f64| progress(done * 16f64.powi(1 - k as i32));
-            let coarse_system = assemble_watched(scene, &coarse, settings.exchange, &share)?;
-            let solution = solver::Cg { tolerance: settings.tolerance }.solve(coarse_system.equation(), &mut ())?;
-            levels.push(LevelSolution::new(scene, &coarse, &solution.radiance, coarse_system.emission()));
-        }
-        levels.push(LevelSolution::new(scene, &bundles, &truth, system.emission()));
-        Ok(refinement::compare(scene, &bundles, &levels, &path_estimate, system.emission(), settings.significance))
-    })?;
+            let finest = LevelSolution::new(scene, &bundles, &truth, system.emission());
+            levels.push(finest.clone());
+            let (emission, significance) = (system.emission(), settings.significance);
+            Ok((refinement::compare(scene, &bundles, &levels, &reference, emission, significance), finest))
+        })?;
+    for (run, sample) in estimators.iter_mut().zip(&sampled) {
+        let Some(sample) = sample else { continue };
+        let other = (run.estimator != REFERENCE).then_some(&reference);
+        run.mesh = Some(refinement::hold(scene, &refinement, &finest, sample, other, settings.significance));
+    }
 
     let pictures = Measurement::new(scene, &bundles, settings.gather).map(|measurement| {
         stages.time("gather", |progress| picture(&measurement, &system, &truth, settings.n_bounces, progress))
@@ -146,6 +164,7 @@ pub fn run(
         albedos,
         truncation,
         estimators,
+        sequential,
         refinement,
         stages: stages.seconds,
         pictures,

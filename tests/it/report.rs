@@ -10,7 +10,7 @@ use etendue::study::{
 };
 use std::collections::BTreeSet;
 
-const FIGURES: [&str; 5] = ["convergence", "albedos", "truncation", "monte-carlo", "refinement"];
+const FIGURES: [&str; 6] = ["convergence", "albedos", "truncation", "monte-carlo", "sequential", "refinement"];
 
 fn file<'a>(files: &'a [Artifact], name: &str) -> &'a [u8] {
     &files.iter().find(|file| file.name == name).unwrap_or_else(|| panic!("{name} is missing")).bytes
@@ -30,7 +30,12 @@ fn assert_sound(outcome: &StudyOutcome) -> Vec<Artifact> {
     let files = render(outcome).unwrap();
 
     // Every figure is there three times, and every name once.
-    for figure in FIGURES.iter().filter(|figure| **figure != "albedos" || outcome.albedos.is_some()) {
+    let is_there = |figure: &str| match figure {
+        "albedos" => outcome.albedos.is_some(),
+        "sequential" => outcome.sequential.is_some(),
+        _ => true,
+    };
+    for figure in FIGURES.iter().filter(|figure| is_there(figure)) {
         let svg = text(&files, &format!("{figure}.svg"));
         let tree = roxmltree::Document::parse(svg).unwrap_or_else(|error| panic!("{figure}.svg: {error}"));
         assert!(tree.root_element().attribute("viewBox").is_some() && !svg.contains("NaN"), "{figure}.svg");
@@ -139,9 +144,23 @@ fn csv_brings_every_number_back() {
         assert!(row[0] == t.bounces.to_string() && same(row[1], t.error) && same(row[2], t.bound), "{row:?}");
     }
     let points = outcome.estimators.iter().flat_map(|run| run.points.iter().map(move |p| (&run.estimator, p)));
-    for (row, (estimator, p)) in rows(text(&files, "monte-carlo.csv"))[1..].iter().zip(points) {
+    let table = rows(text(&files, "monte-carlo.csv"));
+    assert_eq!(table[0][3..], ["error", "standard_error", "predicted_standard_error", "steps", "seconds"]);
+    assert_eq!(table.len() - 1, points.clone().count());
+    for (row, (estimator, p)) in table[1..].iter().zip(points) {
         assert!(row[0] == estimator && row[2] == p.samples_per_bundle.to_string(), "{row:?}");
-        assert!(same(row[3], p.error) && same(row[4], p.standard_error), "{row:?}");
+        assert!(same(row[3], p.error) && same(row[4], p.standard_error) && same(row[7], p.seconds), "{row:?}");
+        assert!(row[5].is_empty() == p.predicted.is_none() && row[6] == p.steps.to_string(), "{row:?}");
+        assert!(p.predicted.is_none_or(|predicted| same(row[5], predicted)), "{row:?}");
+    }
+    for (row, run) in rows(text(&files, "estimators.csv"))[1..].iter().zip(&outcome.estimators) {
+        assert!(row[0] == run.estimator && same(row[2], run.slope) && same(row[5], run.samples_for_percent), "{row:?}");
+        assert!(row[6].is_empty() == run.variance.is_none() && row[13].is_empty() == run.mesh.is_none(), "{row:?}");
+        assert!(row[10].is_empty() && same(row[12], run.p_value) && same(row[16], run.seconds), "{row:?}");
+    }
+    let stages = &outcome.sequential.as_ref().unwrap().stages;
+    for (row, stage) in rows(text(&files, "sequential.csv"))[1..].iter().zip(stages) {
+        assert!(row[0] == stage.products.to_string() && same(row[3], stage.residual) && same(row[4], stage.error));
     }
     for (row, l) in rows(text(&files, "refinement.csv"))[1..].iter().zip(&outcome.refinement.levels) {
         assert!(same(row[0], l.patch_size) && same(row[2], l.error) && same(row[3], l.noise), "{row:?}");
@@ -307,6 +326,7 @@ fn nothing_measured_still_makes_a_page() {
     outcome.albedos.as_mut().unwrap().levels.clear();
     outcome.truncation.clear();
     outcome.estimators.clear();
+    outcome.sequential.as_mut().unwrap().stages.clear();
     outcome.refinement.levels.clear();
     outcome.refinement.surfaces.clear();
     outcome.stages.clear();
@@ -336,9 +356,19 @@ fn no_number_breaks_a_figure() {
         for run in &mut outcome.estimators {
             for (i, p) in run.points.iter_mut().enumerate() {
                 (p.samples_per_bundle, p.error, p.standard_error) = ([0, 1, u64::MAX][i % 3], pick(i), pick(i + 1));
+                (p.predicted, p.seconds) = ((i % 2 == 0).then(|| pick(i + 2)), pick(i + 3));
             }
             (run.worst_z, run.p_value, run.slope, run.seconds) = (pick(0), pick(1), pick(2), pick(3));
+            (run.seconds_slope, run.efficiency, run.samples_for_percent) = (pick(1), pick(2), pick(4));
+            run.variance.iter_mut().for_each(|v| (v.ratio, v.standard_error, v.p_value) = (pick(0), pick(1), pick(2)));
+            run.mesh.iter_mut().for_each(|m| (m.difference, m.noise, m.worst_t) = (pick(3), pick(4), Some(pick(5))));
         }
+        let staged = outcome.sequential.as_mut().unwrap();
+        for (i, stage) in staged.stages.iter_mut().enumerate() {
+            (stage.products, stage.steps) = ([0, 1, usize::MAX][i % 3], [u64::MAX, 0, 1][i % 3]);
+            (stage.seconds, stage.residual, stage.error) = (pick(i), pick(i + 1), pick(i + 2));
+        }
+        (staged.factor, staged.seconds) = (pick(0), pick(1));
         for (i, level) in outcome.refinement.levels.iter_mut().enumerate() {
             (level.patch_size, level.error, level.noise) = (pick(i), pick(i + 1), pick(i + 2));
         }

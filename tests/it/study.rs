@@ -100,9 +100,19 @@ fn where_there_is_no_camera_and_all_emits_the_reflected_flux_is_read() {
 
 /// A small study of a coarse case by these methods.
 fn study_of(case: &Case, solvers: &[&str]) -> StudyOutcome {
-    let settings = StudySettings {
+    study_with(case, StudySettings { solvers: words(solvers), ..settings(case) })
+}
+
+fn words(list: &[&str]) -> Vec<String> {
+    list.iter().map(|word| word.to_string()).collect()
+}
+
+/// One solver and the fewest samples.
+fn settings(case: &Case) -> StudySettings {
+    StudySettings {
         resolution: case.bundles.resolution(),
-        solvers: solvers.iter().map(|name| name.to_string()).collect(),
+        solvers: words(&["lu"]),
+        estimators: Vec::new(),
         n_levels: 1,
         tolerance: TOLERANCE,
         albedos: Vec::new(),
@@ -114,7 +124,10 @@ fn study_of(case: &Case, solvers: &[&str]) -> StudyOutcome {
         seed: 4711,
         gather: Gather { samples: 1, rays: 1, seed: 1 },
         n_bounces: 1,
-    };
+    }
+}
+
+fn study_with(case: &Case, settings: StudySettings) -> StudyOutcome {
     let provenance = Provenance {
         version: String::new(),
         command: Vec::new(),
@@ -181,4 +194,59 @@ fn time_runs_and_every_method_has_its_importance() {
     }
     assert_eq!(outcome.duality.solver, outcome.reference_solver);
     assert!(outcome.duality.difference < ROUNDING);
+}
+
+/// Family-wise, of every verdict below; each is corrected for its own comparisons.
+const SIGNIFICANCE: f64 = 1e-6;
+
+#[test]
+fn every_random_method_is_right_and_knows_its_error_beforehand() {
+    for name in ["corner-box", "two-rooms"] {
+        let case = scenes::find(name);
+        let (estimators, walk_samples, path_samples) = (words(&["all"]), 1024, 256);
+        let outcome = study_with(case, StudySettings { estimators, walk_samples, path_samples, ..settings(case) });
+        let names: Vec<&str> = outcome.estimators.iter().map(|run| run.estimator.as_str()).collect();
+        let known: Vec<&str> = study::estimator_names().filter(|name| *name != "sequential-walk").collect();
+        assert_eq!(names, known);
+        for run in &outcome.estimators {
+            let id = format!("{name}, {}", run.estimator);
+            assert!(run.refusal.is_none() && run.prediction_refusal.is_none(), "{id}: {:?}", run.refusal);
+            let last = run.points.last().unwrap();
+            assert!(run.points.windows(2).all(|p| p[0].seconds < p[1].seconds && p[0].steps < p[1].steps), "{id}");
+            if run.truth == "continuous" {
+                // They know no mesh, and so agree with one another better than with the matrix.
+                assert_eq!(run.mesh.unwrap().p_value.is_none(), run.estimator == "path-tracer", "{id}");
+                assert!(run.mesh.unwrap().p_value.is_none_or(|p| p >= SIGNIFICANCE), "{id}: {:?}", run.mesh);
+                continue;
+            }
+            assert!(run.p_value >= SIGNIFICANCE && run.n_comparisons > 0, "{id}: |z| {}", run.worst_z);
+            assert!(run.mesh.is_none(), "{id}");
+            match run.estimator.as_str() {
+                // Their samples depend on one another.
+                "quasi-walk" | "stochastic-jacobi" => assert!(last.predicted.is_none(), "{id}"),
+                // Weights telescope: nothing varies but the last digits.
+                "guided-walk" => assert!(run.points.iter().all(|p| p.error < 1e-11) && run.variance.is_none(), "{id}"),
+                _ => {
+                    let variance = run.variance.unwrap_or_else(|| panic!("{id}: no variance"));
+                    assert!(variance.p_value >= SIGNIFICANCE, "{id}: {variance:?}");
+                    // So many samples are enough, and one fewer is not.
+                    let error = |n: f64| last.predicted.unwrap() * (last.samples_per_bundle as f64 / n).sqrt();
+                    assert!(error(run.samples_for_percent) <= 0.01 * (1.0 + ROUNDING), "{id}");
+                    assert!(error(run.samples_for_percent - 1.0) > 0.01 || run.samples_for_percent == 1.0, "{id}");
+                }
+            }
+        }
+        let sequential = outcome.sequential.unwrap();
+        assert!(sequential.factor < 0.5 && sequential.stop == "converged", "{name}: {sequential:?}");
+        assert!(sequential.stages.last().unwrap().error < 1e-10, "{name}: {sequential:?}");
+    }
+}
+
+#[test]
+fn an_unknown_method_ends_a_study_before_it_begins() {
+    let case = scenes::find("corner-box");
+    let settings = StudySettings { estimators: words(&["collision-wolk"]), ..settings(case) };
+    let provenance = study_of(case, &["lu"]).provenance;
+    let refused = study::run(&case.scene, &settings, provenance, &());
+    assert!(matches!(refused, Err(StudyError::UnknownEstimator { name, .. }) if name == "collision-wolk"));
 }

@@ -66,6 +66,16 @@ pub struct SequentialEstimate {
 impl MatrixWalk {
     /// Sequential Monte Carlo by these walks, of any scoring; bounces are not looked at.
     pub fn sequential(&self, settings: Sequential, seed: u64) -> SequentialEstimate {
+        self.sequential_watched(settings, seed, &mut |_, _| ())
+    }
+
+    /// [`MatrixWalk::sequential`], showing every stage after it and its L̃ to `watch`.
+    pub fn sequential_watched(
+        &self,
+        settings: Sequential,
+        seed: u64,
+        watch: &mut dyn FnMut(Stage, &Block),
+    ) -> SequentialEstimate {
         let emission = self.emission();
         let sizes: Vec<f64> = emission.columns().map(max_abs).collect();
         let relative = |residual: &Block| {
@@ -105,7 +115,9 @@ impl MatrixWalk {
             since_halved = if size <= 0.5 * since_halved.0 { (size, 0) } else { (since_halved.0, since_halved.1 + 1) };
             let n_products = last.n_products + 1 + self.scoring().first_bounce();
             let n_steps = last.n_steps + correction.n_steps;
-            history.push(Stage { n_products, n_steps, residual: size });
+            let stage = Stage { n_products, n_steps, residual: size };
+            watch(stage, &radiance);
+            history.push(stage);
         };
         SequentialEstimate { radiance: best, history, stop }
     }

@@ -1,10 +1,9 @@
-//! What was computed from the matrix: solvers, the truncated series, random walks.
+//! What was computed from the matrix: solvers and the truncated series.
 
 use super::markup::{Column, Table, section};
-use super::verdict::{SIGNIFICANCE, agrees};
 use super::{FigureOnPage, figure};
-use crate::report::number::{count, products, scientific, seconds, significant};
-use crate::study::{EstimatorRun, StudyOutcome};
+use crate::report::number::{products, scientific, seconds};
+use crate::study::StudyOutcome;
 
 /// Convergence figure and the table of all solvers.
 pub fn solvers(outcome: &StudyOutcome, on_page: &FigureOnPage) -> String {
@@ -73,61 +72,4 @@ pub fn truncation(outcome: &StudyOutcome, on_page: &FigureOnPage) -> String {
         "Error of E + K E + … + KᵏE in the maximum norm, relative to the solution, beside the bound known beforehand.",
     );
     section("truncation", "How many bounces are enough", &lead, &shown)
-}
-
-/// Monte Carlo figure and the verdicts.
-pub fn estimators(outcome: &StudyOutcome, on_page: &FigureOnPage) -> String {
-    use Column::{Numbers, Words};
-    let mut table = Table::new(&[
-        ("estimator", Words),
-        ("truth", Words),
-        ("samples a bundle", Numbers),
-        ("error", Numbers),
-        ("standard error", Numbers),
-        ("slope", Numbers),
-        ("largest |z|", Numbers),
-        ("of", Numbers),
-        ("p", Numbers),
-        ("time", Numbers),
-        ("verdict", Words),
-    ]);
-    for run in &outcome.estimators {
-        let last = run.points.last();
-        let number = |value: Option<f64>| value.map_or("—".into(), |v| significant(v, 2));
-        table.row(&[
-            &run.estimator,
-            &run.truth,
-            &last.map_or("—".into(), |p| count(p.samples_per_bundle)),
-            &number(last.map(|p| p.error)),
-            &number(last.map(|p| p.standard_error)),
-            &significant(run.slope, 3),
-            &significant(run.worst_z, 3),
-            &count(run.n_comparisons as u64),
-            &significant(run.p_value, 2),
-            &seconds(run.seconds),
-            verdict(run),
-        ]);
-    }
-    let lead = "Walks on the matrix estimate the discrete truth and must hit it within their own error bars. The path tracer never sees the \
-                matrix: it estimates the continuous truth, and its distance from the matrix levels off at the discretisation error.";
-    let shown = figure(
-        on_page,
-        "Error of every estimator against samples per bundle, both logarithmic, beside its own standard error and a line of slope minus one half",
-        "Étendue-weighted root mean square difference from the discrete solution (markers), and what the standard errors predict (lines).",
-    );
-    let caption = format!(
-        "z-scores at the largest sample count, of bundles pooled with their neighbours until each comparison rests on 400 expected scores; p is the probability of one this large, corrected for their number \
-         (Šidák), and below {} the verdict is disagreement.",
-        significant(SIGNIFICANCE, 1)
-    );
-    section("estimators", "Random answers", lead, &(shown + &table.html(&caption)))
-}
-
-fn verdict(run: &EstimatorRun) -> &'static str {
-    match (run.truth.as_str(), agrees(run)) {
-        ("discrete", true) => "agrees",
-        ("discrete", false) => "disagrees",
-        (_, true) => "mesh not yet visible",
-        (_, false) => "mesh visible",
-    }
 }

@@ -1,6 +1,7 @@
 //! One self-contained page: no scripts, nothing fetched, figures and pictures inside.
 
 mod albedo;
+mod estimators;
 mod markup;
 mod matrices;
 mod methods;
@@ -30,6 +31,8 @@ pub struct FiguresOnPage {
     pub albedos: Option<FigureOnPage>,
     pub truncation: FigureOnPage,
     pub monte_carlo: FigureOnPage,
+    /// Where it was run.
+    pub sequential: Option<FigureOnPage>,
     pub refinement: FigureOnPage,
 }
 
@@ -50,7 +53,7 @@ pub fn page(
         methods::solvers(outcome, &figures.convergence),
         albedos.map(|(study, figure)| albedo::albedos(study, figure)).unwrap_or_default(),
         methods::truncation(outcome, &figures.truncation),
-        methods::estimators(outcome, &figures.monte_carlo),
+        estimators::estimators(outcome, &figures.monte_carlo, figures.sequential.as_ref()),
         refinement::refinement(outcome, &figures.refinement),
         matrices::matrices(outcome),
         origin::stages(outcome),

@@ -21,7 +21,7 @@ pub fn sentence(outcome: &StudyOutcome) -> String {
 
 /// Whether walks that estimate the discrete truth hit it.
 pub fn agrees(run: &EstimatorRun) -> bool {
-    run.p_value >= SIGNIFICANCE
+    run.n_comparisons == 0 || run.p_value >= SIGNIFICANCE
 }
 
 fn solvers(outcome: &StudyOutcome) -> Option<String> {
@@ -40,7 +40,7 @@ fn solvers(outcome: &StudyOutcome) -> Option<String> {
 }
 
 fn walks(outcome: &StudyOutcome) -> Option<String> {
-    let discrete = || outcome.estimators.iter().filter(|run| run.truth == "discrete");
+    let discrete = || outcome.estimators.iter().filter(|run| run.truth == "discrete" && run.refusal.is_none());
     let least = discrete().map(|run| run.p_value).filter(|p| !p.is_nan()).reduce(f64::min)?;
     let verb = if discrete().all(agrees) { "agree" } else { "disagree" };
     Some(format!("random walks on the matrix {verb} with them (least p = {})", significant(least, 2)))

@@ -153,3 +153,36 @@ fn a_black_scene_is_a_study_too() {
         assert!(run["stop"] == "refused" || super::number(&run["error"]) == 0.0, "{run}");
     }
 }
+
+#[test]
+fn random_methods_are_chosen_by_name_and_the_path_tracer_is_always_there() {
+    let desk = Desk::new(&[]);
+    let scene = ["study", "furnace-cube", "--patch-size", "0.5", "--solvers", "gth", "-o", "report", "--estimators"];
+    let run = desk.run(&[&scene[..], &["sequential-walk,light-tracer,absorption-walk"], &FEW].concat());
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    for words in
+        ["absorption-walk (discrete)", "path-tracer (continuous)", "light-tracer (continuous)", "sequential-walk:"]
+    {
+        assert!(run.stdout.contains(words), "'{words}' is not in\n{}", run.stdout);
+    }
+    let names = assert_folder(&desk, "report");
+    for name in ["monte-carlo.svg", "sequential.svg", "sequential.csv", "estimators.csv"] {
+        assert!(names.iter().any(|found| found == name), "{name} is not in {names:?}");
+    }
+    let report = read_json(&desk.path("report/report.json"));
+    let runs = report["estimators"].as_array().unwrap();
+    let found: Vec<&str> = runs.iter().map(|run| run["estimator"].as_str().unwrap()).collect();
+    assert_eq!(found, ["absorption-walk", "path-tracer", "light-tracer"]);
+    assert!(report["sequential"]["stages"].as_array().unwrap().len() > 1);
+    let point = &runs[0]["points"][0];
+    for key in ["samples_per_bundle", "error", "standard_error", "predicted", "steps", "seconds"] {
+        assert!(!point[key].is_null(), "{key} is not in {point}");
+    }
+}
+
+#[test]
+fn an_unknown_random_method_is_refused_before_the_work_and_all_are_named() {
+    let run = super::etendue(&["study", "maze", "--estimators", "patch-tracer,collision-walk"]);
+    run.assert_refused(4, &["patch-tracer", "path-tracer", "collision-walk", "sequential-walk", "all"]);
+    assert!(run.took < super::AT_ONCE);
+}

@@ -2,9 +2,9 @@
 
 use etendue::image::Image;
 use etendue::study::{
-    AdjointRun, AlbedoLevel, AlbedoStudy, Duality, EstimatorRun, ExchangeSummary, Family, HistoryPoint, LawsMeasured,
-    Pictures, Provenance, Refinement, RefinementLevel, RepairRun, SamplePoint, SolverRun, StudyOutcome, SurfaceMean,
-    Truncation,
+    AdjointRun, AlbedoLevel, AlbedoStudy, Approach, Duality, EstimatorRun, ExchangeSummary, Family, HistoryPoint,
+    LawsMeasured, MeshAgreement, Pictures, Provenance, Refinement, RefinementLevel, RepairRun, SamplePoint,
+    SequentialPoint, SequentialRun, SolverRun, StudyOutcome, SurfaceMean, Truncation, VarianceAgreement,
 };
 use std::collections::BTreeMap;
 
@@ -94,24 +94,69 @@ fn direct(solver: &str, seconds: f64, error: f64) -> SolverRun {
 }
 
 fn estimator(name: &str, truth: &str, noise: f64, floor: f64, seed: usize) -> EstimatorRun {
-    let points = (0..6)
+    let is_walk = truth == "discrete";
+    let points: Vec<SamplePoint> = (0..6)
         .map(|i| {
             let samples = 16_u64 << (2 * i);
-            let standard_error = noise / (samples as f64).sqrt();
-            let measured = standard_error * (1.0 + 0.03 * wobble(seed + i as usize));
-            SamplePoint { samples_per_bundle: samples, error: measured.hypot(floor), standard_error }
+            let predicted = noise / (samples as f64).sqrt();
+            let standard_error = predicted * (1.0 + 0.03 * wobble(seed + i as usize));
+            let error = (predicted * (1.0 + 0.05 * wobble(seed + 31 + i as usize))).hypot(floor);
+            let (steps, seconds) = (2436 * 3 * samples, 1e-4 * samples as f64 * (1.0 + seed as f64 / 20.0));
+            let predicted = is_walk.then_some(predicted);
+            SamplePoint { samples_per_bundle: samples, error, standard_error, predicted, steps, seconds }
         })
         .collect();
     let agrees = floor == 0.0;
+    let last = *points.last().unwrap();
     EstimatorRun {
         estimator: name.into(),
+        approach: if is_walk { Approach::Gathering } else { Approach::Paths },
         truth: truth.into(),
-        points,
+        refusal: None,
         worst_z: if agrees { 4.21 } else { 61.0 },
+        n_degrees_of_freedom: None,
         n_comparisons: 7308,
         p_value: if agrees { 0.17 } else { 0.0 },
         slope: if agrees { -0.501 } else { -0.31 },
-        seconds: 3.2,
+        seconds_slope: if agrees { -0.497 } else { -0.33 },
+        efficiency: 1.0 / (last.standard_error.powi(2) * last.seconds),
+        samples_for_percent: (noise / 0.01).powi(2).ceil(),
+        variance: is_walk.then_some(VarianceAgreement { ratio: 1.003, standard_error: 0.004, p_value: 0.45 }),
+        prediction_refusal: None,
+        mesh: (!is_walk).then_some(MeshAgreement {
+            difference: 0.0019,
+            noise: 0.0006,
+            agrees: true,
+            worst_t: None,
+            p_value: None,
+        }),
+        points,
+        seconds: last.seconds,
+    }
+}
+
+/// A tenth of the error a stage, until rounding.
+fn sequential() -> SequentialRun {
+    let stages: Vec<SequentialPoint> = (1..18)
+        .map(|k| {
+            let error = 0.4_f64 * 0.1_f64.powi(k as i32).max(2e-14);
+            SequentialPoint {
+                products: k,
+                steps: 1_900_000 * k as u64,
+                seconds: 0.21 * k as f64,
+                residual: 1.7 * error,
+                error,
+            }
+        })
+        .collect();
+    SequentialRun {
+        estimator: "sequential-walk".into(),
+        refusal: None,
+        n_walks: 256,
+        stop: "converged".into(),
+        factor: 0.1,
+        seconds: 3.57,
+        stages,
     }
 }
 
@@ -235,6 +280,7 @@ pub fn cornell() -> StudyOutcome {
             estimator("Absorption walk", "discrete", 2.6, 0.0, 23),
             estimator("Collision walk", "discrete", 1.7, 0.0, 41),
         ],
+        sequential: Some(sequential()),
         refinement: Refinement {
             levels: [(0.4, 168, 0.0141), (0.2, 640, 0.0068), (0.1, 2436, 0.0036), (0.05, 9600, 0.00165)]
                 .map(|(patch_size, n_bundles, error)| RefinementLevel { patch_size, n_bundles, error, noise: 0.0006 })
