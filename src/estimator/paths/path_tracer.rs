@@ -10,13 +10,14 @@
 //! q/(p + q) and p/(p + q). Before each ray, a [`Roulette`] decides whether the path goes on.
 //!
 //! Variance, with paths weighed by their throughput: a ray adds no more than its throughput times E. A point on an emitter adds
-//! f E cosθ′ / (p + q) ≤ (f cosθ′ / q) E under the balance heuristic, with no trace of the 1/r² of near emitters, and no more than
-//! 1.21 times that under the power heuristic. f cosθ′ / q is the albedo of a diffuse surface and bounded for a Phong lobe, so one vertex
-//! adds 2.21 max E at most, the length of paths falls off geometrically where light is absorbed or escapes, and all moments exist. With
+//! f E cosθ′ / (p + q) ≤ (f cosθ′ / q) E under the balance heuristic and half of that at most under the power heuristic, with no trace of the
+//! 1/r² of near emitters. f cosθ′ / q is the albedo of a diffuse surface and bounded for a Phong lobe, so one vertex adds 2 max E at most, the
+//! length of paths falls off geometrically where light is absorbed or escapes, and all moments exist. With
 //! [`Sampling::Emitters`] alone a point adds f E cosθ′ cosθ″ / (r² p), whose square cannot be integrated where an emitter touches a
 //! surface that it lights: there the variance is infinite, the error falls off slower than n^(−1/2), and no error bar holds.
 //!
 //! Cost: a closest-hit ray and a shadow ray a vertex. Visibility leaves out the plane that a ray starts on by identity; there is no epsilon.
+//! Paths of one bundle go abreast; each draws and finds what it would by itself, bit for bit.
 //! Source: Kajiya 1986; Veach 1997, §9.2 (heuristics), §10.4 (roulette).
 
 use super::super::bounces::Columns;

@@ -1,8 +1,9 @@
 //! What holds of every estimator of paths, and what is refused.
 
 use super::*;
-use etendue::estimator::{EstimatorError, estimate};
+use etendue::estimator::{EstimatorError, Score, Truth, estimate};
 use etendue::gallery;
+use etendue::sampling::Stream;
 use etendue::scattering::Phong;
 
 /// Bands that nothing emits, and sides that reflect nothing.
@@ -36,6 +37,45 @@ fn threads_change_no_bit() {
         for n_threads in [2, 3, 8] {
             assert_eq!(alone, on(n_threads), "{} on {n_threads} threads", contestant.label);
         }
+    }
+}
+
+/// Another estimator's samples, one after another.
+struct OneByOne<'a> {
+    all: &'a dyn Estimator,
+}
+
+impl Estimator for OneByOne<'_> {
+    fn name(&self) -> &'static str {
+        self.all.name()
+    }
+
+    fn truth(&self) -> Truth {
+        self.all.truth()
+    }
+
+    fn n_bundles(&self) -> usize {
+        self.all.n_bundles()
+    }
+
+    fn n_columns(&self) -> usize {
+        self.all.n_columns()
+    }
+
+    fn sample(&self, start: usize, stream: &mut Stream, score: &mut Score) {
+        self.all.sample(start, stream, score);
+    }
+}
+
+/// Paths of one bundle go abreast. Each finds what it finds alone, on diffuse and on glossy surfaces, and costs as many rays.
+#[test]
+fn paths_abreast_are_the_same_paths() {
+    let scene = dim_room();
+    let bundles = bundles(&scene, 0.5);
+    for contestant in contestants(&scene, &bundles, Bounces::Each(3)).iter().filter(|c| c.label.starts_with("paths")) {
+        let abreast = estimate(&*contestant.estimator, 150, SEED);
+        let alone = estimate(&OneByOne { all: &*contestant.estimator }, 150, SEED);
+        assert_eq!(abreast, alone, "{}", contestant.label);
     }
 }
 
