@@ -70,6 +70,7 @@ Examples:
   etendue study cornell-box                         writes out/cornell-box/report.html and its files
   etendue study room.xml --patch-size 0.1 -o room   a scene file, cut as finely as you say
   etendue study two-rooms --solvers all             every method there is
+  etendue study corner-box --estimators all         every random method there is
   etendue study maze --albedo 0.5,0.9,0.99,0.999    products against albedo, too";
 
 #[derive(Debug, Subcommand)]

@@ -20,6 +20,9 @@ pub const REFERENCE: &str = "path-tracer";
 /// Corrections by walks on the residual, see [`Sequential`](crate::estimator::Sequential).
 pub(super) const SEQUENTIAL: &str = "sequential-walk";
 
+/// Points on emitters alone: where an emitter touches what it lights, the variance is infinite, and no error bar holds.
+pub const UNBOUNDED: &str = "path-tracer-emitters";
+
 /// What a random method does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -50,14 +53,14 @@ const ROSTER: [(&str, Approach); 18] = [
     (REFERENCE, Approach::Paths),
     ("path-tracer-power", Approach::Paths),
     ("path-tracer-directions", Approach::Paths),
-    ("path-tracer-emitters", Approach::Paths),
+    (UNBOUNDED, Approach::Paths),
     ("light-tracer", Approach::Paths),
     ("bidirectional", Approach::Paths),
     ("bidirectional-power", Approach::Paths),
 ];
 
 /// Unknowns above which what needs one right-hand side for each is not predicted.
-const MOST_DIAGONAL: usize = 1500;
+pub(super) const MOST_DIAGONAL: usize = 2500;
 
 /// On the residual of the equations of moments: far below what any number of samples can tell.
 const MOMENT_TOLERANCE: f64 = 1e-10;
@@ -149,7 +152,7 @@ impl<'a> Roster<'a> {
             "guided-walk" => GuidedWalk::gathering(self.system, self.truth).map(Member::Guided),
             "path-tracer-power" => Ok(Member::Paths(tracer()?.with_sampling(Sampling::Both(Heuristic::Power)))),
             "path-tracer-directions" => Ok(Member::Paths(tracer()?.with_sampling(Sampling::Directions))),
-            "path-tracer-emitters" => Ok(Member::Paths(tracer()?.with_sampling(Sampling::Emitters))),
+            UNBOUNDED => Ok(Member::Paths(tracer()?.with_sampling(Sampling::Emitters))),
             "light-tracer" => LightTracer::new(self.scene, self.bundles).map(Member::Photons),
             "bidirectional" => pairs().map(Member::Pairs),
             "bidirectional-power" => Ok(Member::Pairs(pairs()?.with_heuristic(Heuristic::Power))),
@@ -278,7 +281,7 @@ mod tests {
 
     #[test]
     fn every_name_stands_for_the_method_that_bears_it() {
-        let scene = gallery::furnace_cube();
+        let scene = gallery::furnace_cube(&[0.5], &[1.0]).expect("a furnace is valid");
         let bundles = Bundles::new(&scene, Resolution { patch_size: 1.0, n_directions: 1 }).expect("a cube can be cut");
         let system = assemble(&scene, &bundles, Exchange::default()).expect("and assembled");
         let truth = by_factors(system.equation()).expect("and solved");

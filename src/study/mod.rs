@@ -24,7 +24,7 @@ mod what_if;
 pub use albedo::{albedo_study, check_albedos};
 pub use duality::{Duality, LinearSensor};
 pub use error::StudyError;
-pub use estimators::{Approach, choose_estimators, estimator_names};
+pub use estimators::{Approach, UNBOUNDED, choose_estimators, estimator_names};
 pub use memory::memory_estimate;
 pub use outcome::{
     AdjointRun, AlbedoLevel, AlbedoStudy, EstimatorRun, ExchangeSummary, Family, HistoryPoint, LawsMeasured,

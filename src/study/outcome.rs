@@ -260,7 +260,8 @@ pub struct MeshAgreement {
     /// True if every surface's mean that can be compared, at least one, differs by the discretisation error that the refinement estimates,
     /// within statistical error. False where there is one mesh only.
     pub agrees: bool,
-    /// Largest |t| of the difference from the reference path tracer's means, which knows no mesh either; absent for that one.
+    /// Largest |t| of the difference from the reference path tracer's means, which knows no mesh either; absent for that one, and for points
+    /// on emitters alone, whose variance need not exist.
     pub worst_t: Option<f64>,
     /// Probability of one so large, were the two equal (Šidák-corrected).
     pub p_value: Option<f64>,

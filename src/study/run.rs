@@ -3,7 +3,7 @@
 use super::albedo::{albedo_study, check_albedos};
 use super::duality::LinearSensor;
 use super::estimation::{Estimated, estimate_growing};
-use super::estimators::{REFERENCE, Roster, SEQUENTIAL, choose_estimators};
+use super::estimators::{REFERENCE, Roster, SEQUENTIAL, UNBOUNDED, choose_estimators};
 use super::methods::{Solved, solve_all};
 use super::outcome::*;
 use super::refinement::{self, LevelSolution};
@@ -141,7 +141,7 @@ pub fn run(
         })?;
     for (run, sample) in estimators.iter_mut().zip(&sampled) {
         let Some(sample) = sample else { continue };
-        let other = (run.estimator != REFERENCE).then_some(&reference);
+        let other = (![REFERENCE, UNBOUNDED].contains(&run.estimator.as_str())).then_some(&reference);
         run.mesh = Some(refinement::hold(scene, &refinement, &finest, sample, other, settings.significance));
     }
 

@@ -57,7 +57,7 @@ pub fn monte_carlo(estimators: &[EstimatorRun]) -> Sheet {
     ];
     let wide = |run: &EstimatorRun| (1.13 * text_width(&run.estimator, NORMAL)).max(text_width(&detail(run), SMALL));
     let names = estimators.iter().map(wide).fold(96.0, f64::max).min(210.0);
-    let right = f64::from(WIDTH) - names - 26.0;
+    let right = f64::from(WIDTH) - names - 38.0;
     let width = 0.5 * (right - LEFT - BETWEEN);
 
     for (row, group) in rows.iter().enumerate() {
@@ -183,8 +183,8 @@ fn note_exact(sheet: &mut Sheet, panel: &Panel, runs: &[EstimatorRun], group: &G
     for (line, run) in exact.enumerate() {
         let error = run.points.iter().map(|p| p.error).fold(0.0, f64::max);
         let text = format!("{}: no variance, off by {} at any number", run.estimator, significant(error, 2));
-        let at = (panel.left + 8.0, panel.bottom - 12.0 - 15.0 * line as f64);
-        sheet.words(at, text, SMALL, GREY, Anchor::Start);
+        let at = (panel.right - 4.0, panel.top + 12.0 + 15.0 * line as f64);
+        sheet.words(at, text, SMALL, GREY, Anchor::End);
     }
 }
 

@@ -13,11 +13,14 @@ const HEIGHT: u32 = 330;
 /// A step of a walk in the unit of its axis.
 const MILLION: f64 = 1e6;
 
+/// One number of a stage.
+type Number = fn(&SequentialPoint) -> f64;
+
 /// Error and residual after every stage, against products with K (left) and steps of walks (right).
 pub fn sequential(run: &SequentialRun) -> Sheet {
     let mut sheet = Sheet::new(WIDTH, HEIGHT);
     let y = Axis::log_decades(run.stages.iter().flat_map(|stage| [stage.error, stage.residual]));
-    let abscissae: [(&str, fn(&SequentialPoint) -> f64); 2] = [
+    let abscissae: [(&str, Number); 2] = [
         ("products with K, one a stage", |stage| stage.products as f64),
         ("steps of walks, millions", |stage| stage.steps as f64 / MILLION),
     ];
@@ -32,9 +35,7 @@ pub fn sequential(run: &SequentialRun) -> Sheet {
             panel.note_empty(&mut sheet, run.refusal.as_ref().map_or("no stage was run", |_| "refused"));
             continue;
         }
-        let series = |value: fn(&SequentialPoint) -> f64| {
-            run.stages.iter().map(|stage| (abscissa(stage), value(stage))).collect::<Vec<_>>()
-        };
+        let series = |value: Number| run.stages.iter().map(|stage| (abscissa(stage), value(stage))).collect::<Vec<_>>();
         let (errors, residuals) = (series(|stage| stage.error), series(|stage| stage.residual));
         panel.line(&mut sheet, residuals, Stroke::dashed(GREY, 1.25, (4.0, 3.0)));
         panel.line(&mut sheet, errors.clone(), look(0).stroke());

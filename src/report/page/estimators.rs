@@ -4,7 +4,7 @@ use super::markup::{Column, Table, section};
 use super::verdict::{SIGNIFICANCE, agrees, percent};
 use super::{FigureOnPage, figure};
 use crate::report::number::{count, seconds, significant};
-use crate::study::{EstimatorRun, SequentialRun, StudyOutcome};
+use crate::study::{EstimatorRun, SequentialRun, StudyOutcome, UNBOUNDED, VarianceAgreement};
 
 /// Largest count that is written out.
 const MOST_WRITTEN: f64 = 1e15;
@@ -101,9 +101,8 @@ fn verdicts(outcome: &StudyOutcome) -> Table {
             None => significant(run.worst_z, 3),
         };
         let variance = run.variance.as_ref();
-        let ratio = |v: &crate::study::VarianceAgreement| {
-            format!("{} ± {}", significant(v.ratio, 4), significant(v.standard_error, 2))
-        };
+        let ratio =
+            |v: &VarianceAgreement| format!("{} ± {}", significant(v.ratio, 4), significant(v.standard_error, 2));
         let kept = |p: f64| if p >= SIGNIFICANCE { "as foretold" } else { "not as foretold" };
         table.row(&[
             &run.estimator,
@@ -165,13 +164,19 @@ fn mesh(outcome: &StudyOutcome) -> String {
         ]);
     }
     let same = runs.iter().filter_map(|(_, mesh)| mesh.p_value).all(|p| p >= SIGNIFICANCE);
-    let finding = if same {
-        "They differ from the matrix, and not from one another:"
+    let finding = match (runs.len() > 1, same) {
+        (false, _) => "",
+        (true, true) => "The methods agree with one another: ",
+        (true, false) => "The methods disagree with one another, which no mesh explains: ",
+    };
+    let unbounded = if runs.iter().any(|(run, _)| run.estimator == UNBOUNDED) {
+        " Points drawn on emitters alone have infinite variance where a lamp touches what it lights: no error bar of theirs holds."
     } else {
-        "They differ from one another, which no mesh explains:"
+        ""
     };
     table.html(&format!(
-        "Mean reflected radiance of surfaces. {finding} what is left beside noise is the discretisation error, as the refinement below estimates it."
+        "Mean reflected radiance of surfaces. {finding}how far they are off the matrix, noise taken out, is the discretisation error, which the refinement \
+         below estimates by other means.{unbounded}"
     ))
 }
 
