@@ -126,7 +126,7 @@ impl Solver for DeflatedCg {
 
             for (band, [norm, last]) in norms.iter_mut().enumerate() {
                 // A band that is done rests: its numbers would only sink into the denormals.
-                if *norm == 0.0 || band_residual(equation.emission, &r, band) <= self.tolerance {
+                if *norm < f64::MIN_POSITIVE || band_residual(equation.emission, &r, band) <= self.tolerance {
                     continue;
                 }
                 let curvature = inner(&coarse, band, p.column(band), image.column(band));

@@ -61,7 +61,7 @@ impl Solver for Cg {
 
             for (band, norm) in norms.iter_mut().enumerate() {
                 // A band that is done rests: its numbers would only sink into the denormals.
-                if *norm == 0.0 || band_residual(equation.emission, &residual, band) <= self.tolerance {
+                if *norm < f64::MIN_POSITIVE || band_residual(equation.emission, &residual, band) <= self.tolerance {
                     continue;
                 }
                 // Step to the minimum along p, and turn the next direction conjugate.
