@@ -159,7 +159,7 @@ fn a_black_scene_is_a_study_too() {
 #[test]
 fn random_methods_are_chosen_by_name_and_the_path_tracer_is_always_there() {
     let desk = Desk::new(&[]);
-    let scene = ["study", "furnace-cube", "--patch-size", "0.5", "--solvers", "gth", "-o", "report", "--estimators"];
+    let scene = ["study", "furnace-cube", "--patch-size", "0.5", "--solvers", "gth,cg", "-o", "report", "--estimators"];
     let run = desk.run(&[&scene[..], &["sequential-walk,light-tracer,absorption-walk"], &FEW].concat());
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     for words in
