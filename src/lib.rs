@@ -35,7 +35,7 @@
 //! | [`report`] | figures and pages |
 //! | [`study`] | experiments: what varies, what is held, what is recorded |
 //! | [`oracle`] | answers for whoever needs one that is not another renderer's |
-//! | [`compare`] | norms, z-scores, rates |
+//! | [`compare`] | norms, z-scores, equivalence, rates |
 //! | [`solver`] | deterministic answers, one file a method |
 //! | [`estimator`] | random answers: paths, walks on the matrix |
 //! | [`assembly`] | scene + basis → T, S, E, W |
